@@ -109,7 +109,7 @@ class SceneFile(pytest.File):
         return Path(directory) / below.with_suffix(".h5")
 
     @cached_property
-    def kept(self) -> list[str]:
+    def outputs(self) -> list[str]:
         """Return the files of a run that failed: its trace, and its report if that can be written."""
         from .cosim.results import Result
         from .errors import LoomfmuError
@@ -140,7 +140,7 @@ class SceneFile(pytest.File):
         }
         lines = [f"{f'{name}:':13} {value}" for name, value in facts.items() if value]
         outcome = "claim fails:" if verdict.decided else "undecided:"
-        return "\n".join([f"{outcome:13} {verdict.claim}", *lines, *self.kept, *warnings])
+        return "\n".join([f"{outcome:13} {verdict.claim}", *lines, *self.outputs, *warnings])
 
     def _command(self, *options: str) -> str:
         import shlex

@@ -37,6 +37,7 @@ SHORT = {"revolutions": 2, "steps_per_revolution": 90, "grid": "uniform"}
         (lambda: evaluate(DEMO, values=3), "values = 3 is not a list such as"),
         (lambda: evaluate(DEMO, values="belt.margin"), "values = 'belt.margin' is not a list such as"),
         (lambda: sweep(DEMO, processes="a"), "processes = 'a' must be 1 or more"),
+        (lambda: sweep(DEMO, processes=0), "processes = 0 must be 1 or more"),
         (lambda: sweep(DEMO, scheduler=3), "scheduler = 3 is not an address such as"),
         (lambda: sweep(SIMS / "sweeps" / "safe_speed.toml", output=3), "output = 3 is not a path"),
     ],

@@ -54,15 +54,8 @@ def test_run_without_claims_holds(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_set_takes_units_and_may_be_said_again(capsys: pytest.CaptureFixture[str]) -> None:
-    arguments = [
-        "--set",
-        "shaft.speed=685rpm",
-        "--set",
-        "belt.guide_clearance = 0.5 mm",
-        "--set",
-        "heald.stroke=50mm",
-    ]
-    assert main(["run", scene(HEAD + LOOM), *arguments, "--set", "revolutions=0.5"]) == 0
+    values = ("shaft.speed=685rpm", "belt.guide_clearance = 0.5 mm", "heald.stroke=50mm", "revolutions=0.5")
+    assert main(["run", scene(HEAD + LOOM), *(f"--set={value}" for value in values)]) == 0
     printed = capsys.readouterr().out
     assert " ".join(printed.split()).startswith(
         "WL680-3600, G6300 left, weave 10/01, 685 rev/min; belt.guide_clearance = 0.5 mm,"
@@ -90,13 +83,8 @@ def test_a_run_up_turns_the_shaft_less_than_the_nominal_revolutions(
 
 
 def test_warnings_go_to_the_error_stream(capsys: pytest.CaptureFixture[str]) -> None:
-    text = (
-        'coupling = "lagged"\n'
-        + HEAD
-        + LOOM
-        + '[belt]\nguide_clearance = "1.2 mm"\n[wires]\nbelt.yarn_tension = "belt.inertia_force"\n'
-    )
-    assert main(["run", scene(text)]) == 0
+    text = '[belt]\nguide_clearance = "1.2 mm"\n[wires]\nbelt.yarn_tension = "belt.inertia_force"\n'
+    assert main(["run", scene('coupling = "lagged"\n' + HEAD + LOOM + text)]) == 0
     assert capsys.readouterr().err.splitlines() == [
         "warning: belt: guide_clearance = 1.2 mm: above 1 mm replace the belt or slow the loom down",
         "warning: loop: belt.inertia_force -> belt.yarn_tension carries the value of the step before",

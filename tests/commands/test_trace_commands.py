@@ -31,60 +31,47 @@ def test_show_summarises_and_tells_again_whether_all_claims_held(
     assert any("lowest margin" in line for line in lines)
 
 
-def test_show_of_an_unfinished_run_says_so(capsys: pytest.CaptureFixture[str]) -> None:
-    main(["run", scene(HEAD + SHAFT)])
-    with h5py.File("results/scene.h5", "r+") as file:
-        file.attrs["status"] = "interrupted"
-    capsys.readouterr()
-    assert main(["show", "results/scene.h5"]) == 1
-    assert ", interrupted)" in capsys.readouterr().out
-    with h5py.File("results/scene.h5", "r+") as file:
-        file.attrs["status"] = "running"
-    assert main(["show", "results/scene.h5"]) == 1
-    assert ", running, or killed)" in capsys.readouterr().out
+CUT = "the run ended at 25 % of its length, by motor; set may_end = true if it may"
 
 
-def test_show_of_a_run_that_an_fmu_cut_short_says_how_far_it_went(capsys: pytest.CaptureFixture[str]) -> None:
-    main(["run", scene(HEAD + SHAFT)])
-    with h5py.File("results/scene.h5", "r+") as file:  # as a run stores it
-        file.attrs["cut_short"] = (
-            "the run ended at 25 % of its length, by motor; set may_end = true if it may"
-        )
-    capsys.readouterr()
-    assert main(["show", "results/scene.h5"]) == 1
-    lines = capsys.readouterr().out.splitlines()
-    assert lines[0].endswith(", cut short)") and lines[2].startswith("the run ended at 25 % of its length")
-
-
-def test_a_trace_that_was_not_judged_is_not_one_that_holds(capsys: pytest.CaptureFixture[str]) -> None:
+@pytest.mark.parametrize(
+    ("attribute", "value", "said"),
+    [
+        ("status", "interrupted", ", interrupted)\n"),
+        ("status", "running", ", running, or killed)\n"),
+        ("cut_short", CUT, f', cut short)\nscene "Small"\n{CUT}\n'),  # as a run stores it
+        ("claims", None, "claims not judged: the run did not finish\n"),
+    ],
+)
+def test_a_trace_of_a_run_that_did_not_finish_says_so_and_does_not_hold(
+    attribute: str, value: str | None, said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert main(["run", scene(HEAD + SHAFT)]) == 0
     with h5py.File("results/scene.h5", "r+") as file:
-        del file.attrs["claims"]
+        if value is None:
+            del file.attrs[attribute]
+        else:
+            file.attrs[attribute] = value
     capsys.readouterr()
     assert main(["show", "results/scene.h5"]) == 1
-    assert capsys.readouterr().out.endswith("claims not judged: the run did not finish\n")
+    assert said in capsys.readouterr().out
 
 
-def test_a_trace_that_is_cut_short_is_told_in_one_line(capsys: pytest.CaptureFixture[str]) -> None:
-    main(["run", scene(HEAD + LOOM)])
-    whole = Path("results/scene.h5").read_bytes()
-    Path("cut.h5").write_bytes(whole[: len(whole) // 2])
-    capsys.readouterr()
-    assert main(["show", "cut.h5"]) == 2
-    left = f"it is cut off: {len(whole) // 2} of its {len(whole)} bytes are left"
-    assert one_line(capsys) == f"cut.h5: cannot be read as a trace ({left})"
-
-
-def test_a_trace_that_is_damaged_is_told_in_one_line(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_trace_that_is_cut_off_or_damaged_is_told_in_one_line(capsys: pytest.CaptureFixture[str]) -> None:
     main(["run", scene(HEAD + LOOM)])
     content = bytearray(Path("results/scene.h5").read_bytes())
+    half = len(content) // 2
+    Path("cut.h5").write_bytes(content[:half])
     for place in range(2000, len(content), 997):
         content[place] ^= 0xFF
     Path("damaged.h5").write_bytes(content)
     capsys.readouterr()
+    assert main(["show", "cut.h5"]) == 2
+    left = f"it is cut off: {half} of its {len(content)} bytes are left"
+    assert one_line(capsys) == f"cut.h5: cannot be read as a trace ({left})"
     assert main(["show", "damaged.h5"]) == 2
-    assert "Traceback" not in (said := capsys.readouterr().err)
-    assert said.startswith("loomfmu: damaged.h5: ") and said.count("\n") == 1
+    said = capsys.readouterr().err
+    assert said.startswith("loomfmu: damaged.h5: ") and said.count("\n") == 1 and "Traceback" not in said
 
 
 def test_names_with_brackets_and_escapes_are_only_shown(capsys: pytest.CaptureFixture[str]) -> None:

@@ -2,16 +2,13 @@
 
 from math import atan2, cos, hypot, pi, sin
 
-import mpmath
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from reference import MP
 
 from loomfmu.design.dobby import HOOK_BASE, eccentric_chain, hook_angle
 from loomfmu.errors import LoomfmuError
-
-MP = mpmath.mp.clone()
-MP.dps = 50
 
 
 def taken_up(driver, driven, eccentricity, distance, turn):

@@ -48,18 +48,17 @@ def test_inverse_problems_return_what_gives_the_speed():
     assert loom.safe_speed("WL680-3600", stiffness=stiffness).speed == pytest.approx(speed, rel=1e-9)
 
 
-def test_an_impossible_wish_is_answered_with_what_can_be_had():
-    with pytest.raises(LoomfmuError, match=r"no guide clearance gives 1000 rev/min: .* 779\.\d+ to 545\.\d+"):
-        loom.clearance_for(1000 * RPM, "WL680-3600")
-    with pytest.raises(
-        LoomfmuError, match=r"the belt is safe at 540 rev/min with any guide clearance from 0 mm to 0\.8 mm"
-    ):
-        loom.clearance_for("540 rpm", "WL680-3600")
-
-
 @pytest.mark.parametrize(
     ("call", "said"),
     [
+        (
+            lambda: loom.clearance_for(1000 * RPM, "WL680-3600"),
+            r"no guide clearance gives 1000 rev/min: .* 779\.\d+ to 545\.\d+",
+        ),
+        (
+            lambda: loom.clearance_for("540 rpm", "WL680-3600"),
+            r"the belt is safe at 540 rev/min with any guide clearance from 0 mm to 0\.8 mm",
+        ),
         (
             lambda: loom.clearance_for("600 rpm", "WL680-3600", length_factor=0.8),
             "length_factor cannot be set",
@@ -74,22 +73,18 @@ def test_an_impossible_wish_is_answered_with_what_can_be_had():
             lambda: loom.safe_speed("WL680-3600", clearance="0.5 mm", length_factor=0.8),
             "give either clearance or length_factor",
         ),
+        (
+            lambda: loom.safe_speed("WL680-3600", tension=5000.0),
+            "WL680-3600: a weft tension of 5000 N buckles the belt at any speed",
+        ),
+        (lambda: loom.safe_speed("WL680-360"), "there is no machine 'WL680-360'; did you mean 'WL680-3600'"),
+        *((lambda name=name: loom.safe_speed(name), "there is no machine") for name in (3, None, ["a"])),
+        *((lambda name=name: loom.safe_speed("WL680-3600", name), "there is no head") for name in (3, ["a"])),
     ],
 )
-def test_values_that_would_have_no_effect_are_refused(call, said):
-    with pytest.raises(LoomfmuError) as raised:
+def test_what_cannot_be_had_is_refused(call, said):
+    with pytest.raises(LoomfmuError, match=f"^{said}"):
         call()
-    assert str(raised.value).startswith(said)
-
-
-def test_a_tension_that_buckles_alone_is_refused():
-    with pytest.raises(LoomfmuError, match="weft tension of 5000 N buckles the belt at any speed"):
-        loom.safe_speed("WL680-3600", tension=5000.0)
-
-
-def test_unknown_machine_suggests_the_nearest():
-    with pytest.raises(LoomfmuError, match="did you mean 'WL680-3600'"):
-        loom.safe_speed("WL680-360")
 
 
 def test_damper_spring_of_the_source():
@@ -149,11 +144,3 @@ def test_limits_and_messages_are_those_of_a_scene(given, variable):
     with pytest.raises(LoomfmuError) as in_design:
         loom.safe_speed("WL680-3600", **given)
     assert str(in_design.value) == str(in_scene.value).replace(f"belt.{variable}", name)
-
-
-@pytest.mark.parametrize("machine", [3, None, ["WL680-3600"]])
-def test_a_machine_or_a_head_that_is_no_name_is_refused(machine):
-    with pytest.raises(LoomfmuError, match="there is no machine"):
-        loom.safe_speed(machine)
-    with pytest.raises(LoomfmuError, match="there is no head"):
-        loom.safe_speed("WL680-3600", machine)

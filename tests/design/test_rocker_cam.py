@@ -2,9 +2,9 @@
 
 from math import cos, hypot, pi, radians, sin
 
-import mpmath
 import numpy as np
 import pytest
+from reference import MP
 
 from loomfmu.design.cam import design_cam, lift_law, spline_law
 from loomfmu.design.cam_export import gcode, write_csv
@@ -12,8 +12,6 @@ from loomfmu.design.rocker_cam import design_rocker_cam
 from loomfmu.errors import LoomfmuError
 from loomfmu.physics.linkage import four_bar
 
-MP = mpmath.mp.clone()
-MP.dps = 50
 DRIVE = {"distance": "200 mm", "arm": "160 mm", "lowest_angle": "30 deg", "swing": "8 deg"}
 COUNTER = DRIVE | {"lowest_angle": "38 deg", "swing": "-8 deg", "trailing": False}
 both = pytest.mark.parametrize("drive", [DRIVE, COUNTER], ids=["cam", "counter-cam"])

@@ -1,8 +1,8 @@
 """The shed that an air stream needs: published heights, fifty digits, and what is refused."""
 
-import mpmath
 import numpy as np
 import pytest
+from reference import MP
 
 from loomfmu.design import cam
 from loomfmu.design.shed import (
@@ -16,8 +16,6 @@ from loomfmu.design.shed import (
 from loomfmu.errors import LoomfmuError
 from loomfmu.machines import table
 
-MP = mpmath.mp.clone()
-MP.dps = 50
 PUBLISHED = {
     "entry_upper": "1.75 mm",
     "entry_lower": "1.75 mm",

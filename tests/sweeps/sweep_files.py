@@ -4,6 +4,9 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
+
+import loomfmu
 
 SCENE = """
 title = "Small"
@@ -38,6 +41,16 @@ def written(directory: Path, text: str, scene: str = SCENE, head: str = HEAD) ->
     path = directory / "swept.toml"
     path.write_text(head + text)
     return path
+
+
+def sweep_file(text: str, scene: str = SCENE, head: str = HEAD) -> Path:
+    """A sweep and its scene in the current folder."""
+    return written(Path(), text, scene, head)
+
+
+def swept(text: str, output: str = "out", **files: Any) -> loomfmu.Sweep:
+    """A sweep that was run in this process."""
+    return loomfmu.sweep(sweep_file(text, **files), processes=1, output=output)
 
 
 def started(path: Path, *arguments: str) -> subprocess.Popen[str]:

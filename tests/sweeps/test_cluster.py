@@ -9,7 +9,7 @@ from typing import Any
 
 import odd_tasks
 import pytest
-from sweep_files import NO_TRACES, written
+from sweep_files import NO_TRACES, sweep_file, swept
 
 import loomfmu
 from loomfmu import LoomfmuError
@@ -42,29 +42,28 @@ def cluster(fmu_cache: None) -> Iterator[Any]:
 
 
 @pytest.mark.slow
-def test_a_cluster_makes_the_table_of_one_process(tmp_path: Path, cluster: Any) -> None:
-    path = written(tmp_path, SWEPT)
-    one = loomfmu.sweep(path, processes=1, output=tmp_path / "one")
-    found = loomfmu.sweep(path, scheduler=cluster.scheduler_address, output=tmp_path / "cluster")
+def test_a_cluster_makes_the_table_of_one_process(cluster: Any) -> None:
+    one = swept(SWEPT, "one")
+    found = loomfmu.sweep("swept.toml", scheduler=cluster.scheduler_address, output="cluster")
     assert found.ran == 24 and found.errors == 12
     assert found.path.read_bytes() == one.path.read_bytes()
 
 
-def test_a_search_on_a_cluster_finds_what_one_process_finds(tmp_path: Path, cluster: Any) -> None:
+def test_a_search_on_a_cluster_finds_what_one_process_finds(cluster: Any) -> None:
     text = 'maximise = "shaft.speed"\n[ranges]\n"shaft.speed" = ["500 rpm", "800 rpm"]\n[search]\nruns = 50\n'
-    path = written(tmp_path, text, head='scene = "scene.toml"\n')
-    one = loomfmu.optimize(path, processes=1, output=tmp_path / "one")
-    found = loomfmu.optimize(path, scheduler=cluster.scheduler_address, output=tmp_path / "cluster")
+    path = sweep_file(text, head='scene = "scene.toml"\n')
+    one = loomfmu.optimize(path, processes=1, output="one")
+    found = loomfmu.optimize(path, scheduler=cluster.scheduler_address, output="cluster")
     assert found.goal == one.goal and found.runs == one.runs
     names = ("designs.csv", "best.toml")
     assert all((found.path / name).read_bytes() == (one.path / name).read_bytes() for name in names)
 
 
 def test_the_rows_run_on_the_cluster_and_a_sweep_goes_on_there(
-    tmp_path: Path, cluster: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    cluster: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    path = written(tmp_path, SWEPT)
-    output = tmp_path / "out"
+    path = sweep_file(SWEPT)
+    output = Path("out")
     with monkeypatch.context() as killed_at_the_end:
         killed_at_the_end.setattr("loomfmu.sweeps.store.Store.tidy", lambda _store: None)
         loomfmu.sweep(path, processes=1, output=output)
@@ -85,34 +84,34 @@ def test_the_rows_run_on_the_cluster_and_a_sweep_goes_on_there(
 
 @pytest.mark.slow
 def test_a_row_that_ends_the_workers_of_a_cluster_is_found(
-    tmp_path: Path, cluster: Any, monkeypatch: pytest.MonkeyPatch
+    cluster: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    path = written(tmp_path, '[grid]\n"shaft.speed" = [60.0, 60.125, 60.25, 60.375]\n' + NO_TRACES)
+    path = sweep_file('[grid]\n"shaft.speed" = [60.0, 60.125, 60.25, 60.375]\n' + NO_TRACES)
     monkeypatch.setattr("loomfmu.sweeps.schedule.run_rows", odd_tasks.deadly_rows)
-    found = loomfmu.sweep(path, scheduler=cluster.scheduler_address, output=tmp_path / "out").table
+    found = loomfmu.sweep(path, scheduler=cluster.scheduler_address, output="out").table
     errors = found["error"].to_pylist()
     assert errors == [None, "the processes that ran it have ended", None, None]
 
 
 def test_a_scheduler_that_does_not_answer_is_named(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr("loomfmu.sweeps.cluster.ANSWER", 0.5)
-    path = written(tmp_path, SWEPT)
+    path = sweep_file(SWEPT)
     for address in ("tcp://127.0.0.1:1", "nonsense://there"):
-        arguments = ["sweep", str(path), "--output", str(tmp_path / "out"), "--scheduler", address]
+        arguments = ["sweep", str(path), "--output", "out", "--scheduler", address]
         assert main(arguments) == 2
         errors = capsys.readouterr().err
         assert f"loomfmu: {address}: no dask scheduler answers (" in errors.splitlines()[-1]
 
 
-def test_a_scheduler_without_workers_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_scheduler_without_workers_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("loomfmu.sweeps.cluster.ANSWER", 0.5)
     with (
         distributed.LocalCluster(n_workers=0, dashboard_address=":0", host="127.0.0.1") as empty,
         pytest.raises(LoomfmuError, match="the dask scheduler has no workers"),
     ):
-        loomfmu.sweep(written(tmp_path, SWEPT), scheduler=empty.scheduler_address, output=tmp_path / "out")
+        loomfmu.sweep(sweep_file(SWEPT), scheduler=empty.scheduler_address, output="out")
 
 
 def test_a_machine_too_busy_for_a_client_is_tried_again_then_named(monkeypatch: pytest.MonkeyPatch) -> None:

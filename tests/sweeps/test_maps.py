@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from PIL import Image
-from sweep_files import NO_TRACES, written
+from sweep_files import NO_TRACES, sweep_file
 
 import loomfmu
 from loomfmu.design import loom
@@ -15,11 +15,13 @@ from loomfmu.sweeps import maps
 SPEEDS = '"shaft.speed" = { from = "480 rpm", to = "780 rpm", count = 16 }\n'
 SPACING = 20.0  # rev/min
 CLEARANCES = '"belt.guide_clearance" = ["0.2 mm", "0.3 mm", "0.5 mm"]\n'
+OVER_SPEED = '[map]\nx = "shaft.speed"\nvalue = "claim_1.worst"\n'
+OVER_BOTH = f'[grid]\n{SPEEDS}{CLEARANCES}{OVER_SPEED}y = "belt.guide_clearance"\n'
 BUCKLES = "the belt does not buckle: lowest margin: limit"
 
 
 @pytest.fixture
-def drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
+def drawn(monkeypatch: pytest.MonkeyPatch) -> Any:
     """Runs a sweep and gives its picture, as it is on disk and as it was drawn."""
     pictures: list[Any] = []
     save = maps._Picture.save
@@ -31,9 +33,9 @@ def drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
     monkeypatch.setattr(maps._Picture, "save", kept)
 
     def draw(text: str, **arguments: str) -> Any:
-        path = written(tmp_path, text + NO_TRACES, **arguments)
-        found = loomfmu.sweep(path, processes=1, output=tmp_path / "out", restart=True)
-        assert found.map == tmp_path / "out" / "map.png"
+        path = sweep_file(text + NO_TRACES, **arguments)
+        found = loomfmu.sweep(path, processes=1, output="out", restart=True)
+        assert found.map == Path("out/map.png")
         with Image.open(found.map) as image:
             assert image.format == "PNG" and image.size == (800, 550)
             assert len(image.convert("RGB").getcolors(maxcolors=800 * 550) or []) > 50  # not a blank sheet
@@ -59,8 +61,7 @@ TOLERANCE = SPACING**2 / (8.0 * 480.0) + 2e-6 * 780.0
 
 
 def test_two_axes_of_numbers_are_contours_with_the_limit_where_it_is(drawn: Any) -> None:
-    asked = '[map]\nx = "shaft.speed"\ny = "belt.guide_clearance"\nvalue = "claim_1.worst"\n'
-    picture = drawn("[grid]\n" + SPEEDS + CLEARANCES + asked)
+    picture = drawn(OVER_BOTH)
     assert picture.axes.get_xlabel() == "shaft.speed [rev/min]"
     assert picture.axes.get_ylabel() == "belt.guide_clearance [mm]"
     assert picture.figure.axes[1].get_ylabel() == "the belt does not buckle: lowest margin"
@@ -80,6 +81,7 @@ def test_names_are_cells_and_the_limit_runs_between_those_that_hold_and_those_th
     ticks = [label.get_text() for label in picture.axes.get_yticklabels()]
     assert ticks == ["WL680-3600", "WL450-3600", "WL450-5400"]
     assert picture.figure.axes[1].get_ylabel() == "belt.lowest_speed_limit [rev/min]"
+    assert picture.values[0] == pytest.approx(limit(0.3), rel=3e-6)  # off by 1.2e-6 with 90 steps
     segments = [
         segment
         for each in picture.axes.collections
@@ -101,8 +103,7 @@ def test_names_are_cells_and_the_limit_runs_between_those_that_hold_and_those_th
 
 
 def test_one_axis_is_a_line_with_its_limit_and_crosses_where_claims_fail(drawn: Any) -> None:
-    asked = '[map]\nx = "shaft.speed"\nvalue = "claim_1.worst"\n'
-    picture = drawn("[grid]\n" + SPEEDS + asked)
+    picture = drawn("[grid]\n" + SPEEDS + OVER_SPEED)
     curve, first, second, crosses = picture.axes.get_lines()
     assert len(curve.get_xdata()) == 16
     assert first.get_xdata()[0] == pytest.approx(limit(0.3), abs=TOLERANCE)
@@ -114,25 +115,25 @@ def test_one_axis_is_a_line_with_its_limit_and_crosses_where_claims_fail(drawn: 
 
 
 def test_a_second_axis_of_the_grid_makes_more_lines(drawn: Any) -> None:
-    asked = '[map]\nx = "shaft.speed"\nvalue = "claim_1.worst"\n'
-    picture = drawn("[grid]\n" + SPEEDS + CLEARANCES + asked)
+    picture = drawn("[grid]\n" + SPEEDS + CLEARANCES + OVER_SPEED)
     assert len(picture.axes.get_lines()) == 4  # and the crosses
     assert legend(picture)[:3] == [f"belt.guide_clearance [mm] {value}" for value in ("0.2", "0.3", "0.5")]
 
 
 def test_other_axes_stand_at_the_value_that_was_picked(drawn: Any) -> None:
-    asked = '[map]\nx = "shaft.speed"\nvalue = "claim_1.worst"\nat = { "belt.guide_clearance" = "0.5 mm" }\n'
-    picture = drawn("[grid]\n" + SPEEDS + CLEARANCES + asked)
+    picked = 'at = { "belt.guide_clearance" = "0.5 mm" }\n'
+    picture = drawn("[grid]\n" + SPEEDS + CLEARANCES + OVER_SPEED + picked)
     assert picture.axes.get_title() == "Swept\nbelt.guide_clearance = 0.5 mm"
     assert picture.axes.get_lines()[1].get_xdata()[0] == pytest.approx(limit(0.5), abs=TOLERANCE)
 
 
-def test_long_titles_and_claims_fit_into_the_picture(drawn: Any, tmp_path: Path) -> None:
-    asked = '[map]\nx = "shaft.speed"\ny = "belt.guide_clearance"\nvalue = "claim_1.worst"\n'
-    picture = drawn("[grid]\n" + SPEEDS + CLEARANCES + asked)
+def test_long_titles_and_claims_fit_into_the_picture(
+    drawn: Any,
+) -> None:
+    picture = drawn(OVER_BOTH)
     picture._legend("a claim whose name is far longer than the picture is wide " * 4)
     picture.axes.set_title("")
-    picture.save(tmp_path / "long.png")
+    picture.save(Path("long.png"))
     (box,) = (each.get_window_extent() for each in picture.figure.legends[-1:])
     assert box.x0 >= 0.0 and box.x1 <= 800.0
 
@@ -160,9 +161,8 @@ def test_what_could_not_be_run_is_left_blank_and_said(drawn: Any) -> None:
 
 
 def test_a_value_that_is_the_same_everywhere_can_be_drawn(drawn: Any) -> None:
-    asked = '[map]\nx = "shaft.speed"\ny = "belt.guide_clearance"\nvalue = "weft.stroke"\n'
     head = 'title = "Costs $5 and $6"\nscene = "scene.toml"\nvalues = ["weft.stroke"]\n'
-    picture = drawn("[grid]\n" + SPEEDS + CLEARANCES + asked, head=head)
+    picture = drawn(OVER_BOTH.replace("claim_1.worst", "weft.stroke"), head=head)
     assert picture.axes.get_title() == "Costs $5 and $6"
 
 

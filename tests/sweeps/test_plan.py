@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy.stats import qmc
-from sweep_files import HEAD, SCENE, written
+from sweep_files import HEAD, SCENE, sweep_file
 
 from loomfmu import LoomfmuError
 from loomfmu.cosim.scenes import scene as scenes
@@ -15,10 +15,11 @@ from loomfmu.machines import parameters
 from loomfmu.sweeps import plan as plans
 
 RPM = math.pi / 30.0
+WOVEN = SCENE.replace("[shaft]", 'weave = "10/01"\n[shaft]')
 
 
-def plan(directory: Path, text: str, scene: str = SCENE) -> plans.SweepPlan:
-    return plans.load(written(directory, text, scene))
+def plan(text: str, scene: str = SCENE) -> plans.SweepPlan:
+    return plans.load(sweep_file(text, scene))
 
 
 def column(found: plans.SweepPlan, key: str) -> list[object]:
@@ -29,9 +30,8 @@ def column(found: plans.SweepPlan, key: str) -> list[object]:
 # ---- grids
 
 
-def test_a_grid_is_every_combination_with_the_last_axis_fastest(tmp_path: Path) -> None:
+def test_a_grid_is_every_combination_with_the_last_axis_fastest() -> None:
     found = plan(
-        tmp_path,
         '[grid]\n"shaft.speed" = ["500 rpm", 60.0]\n"belt.guide_clearance" = ["0.2 mm", "1 mm", 4e-4]\n',
     )
     assert found.rows == 6
@@ -41,9 +41,8 @@ def test_a_grid_is_every_combination_with_the_last_axis_fastest(tmp_path: Path) 
     assert found.settings(range(4, 5)) == [{"shaft.speed": 60.0, "belt.guide_clearance": 1e-3}]
 
 
-def test_a_range_is_shared_equally_or_in_the_logarithm(tmp_path: Path) -> None:
+def test_a_range_is_shared_equally_or_in_the_logarithm() -> None:
     found = plan(
-        tmp_path,
         '[grid]\n"belt.guide_clearance" = { from = "0.2 mm", to = "1 mm", count = 5 }\n'
         '"belt.bending_stiffness" = { from = 0.1, to = 10.0, count = 3, logarithmic = true }\n',
     )
@@ -54,9 +53,8 @@ def test_a_range_is_shared_equally_or_in_the_logarithm(tmp_path: Path) -> None:
     assert column(found, "belt.bending_stiffness")[:3] == pytest.approx([0.1, 1.0, 10.0], rel=1e-14)
 
 
-def test_keys_may_be_quoted_or_not_and_stand_for_all_frames(tmp_path: Path) -> None:
-    scene = SCENE.replace("[shaft]", 'weave = "10/01"\n[shaft]')
-    found = plan(tmp_path, '[grid]\nheald.stroke = ["90 mm", "100 mm"]\nrevolutions = [1, 2]\n', scene)
+def test_keys_may_be_quoted_or_not_and_stand_for_all_frames() -> None:
+    found = plan('[grid]\nheald.stroke = ["90 mm", "100 mm"]\nrevolutions = [1, 2]\n', WOVEN)
     assert [axis.varied.targets for axis in found.axes] == [
         ("heald_1.stroke", "heald_2.stroke"),
         ("revolutions",),
@@ -66,9 +64,8 @@ def test_keys_may_be_quoted_or_not_and_stand_for_all_frames(tmp_path: Path) -> N
     ]
 
 
-def test_a_machine_goes_to_all_instances_that_take_one_and_a_head_too(tmp_path: Path) -> None:
+def test_a_machine_goes_to_all_instances_that_take_one_and_a_head_too() -> None:
     found = plan(
-        tmp_path,
         '[grid]\nmachine = ["WL450-3600", "WL800-3600"]\nhead = ["GS900 right"]\n'
         '"shaft.speed" = ["400 rpm"]\n',
     )
@@ -80,19 +77,17 @@ def test_a_machine_goes_to_all_instances_that_take_one_and_a_head_too(tmp_path: 
         "weft.head": "GS900 right",
         "belt.head": "GS900 right",
     }
-    instances = scenes.load(tmp_path / "scene.toml", settings).instances
+    instances = scenes.load(Path("scene.toml"), settings).instances
     for name, component in (("weft", "WeftInsertion"), ("belt", "BeltMonitor")):
         wanted = parameters(component, machine="WL800-3600", head="GS900 right")
         assert wanted.items() <= instances[name].values.items()
 
 
-def test_whole_numbers_switches_and_choices_keep_their_type(tmp_path: Path) -> None:
-    scene = SCENE.replace("[shaft]", 'weave = "10/01"\n[shaft]')
+def test_whole_numbers_switches_and_choices_keep_their_type() -> None:
     found = plan(
-        tmp_path,
         "[grid]\nsteps_per_revolution = [90, 180]\n"
         '"belt.prescribe_length_factor" = [true, false]\n"dobby.law" = ["sloped-sine", "harmonic-ends"]\n',
-        scene,
+        WOVEN,
     )
     assert found.settings(range(3, 4)) == [
         {"steps_per_revolution": 90, "belt.prescribe_length_factor": False, "dobby.law": "harmonic_ends"}
@@ -109,8 +104,8 @@ SAMPLE = (
 )
 
 
-def test_a_sample_is_the_latin_hypercube_of_scipy(tmp_path: Path) -> None:
-    found = plan(tmp_path, SAMPLE)
+def test_a_sample_is_the_latin_hypercube_of_scipy() -> None:
+    found = plan(SAMPLE)
     assert found.rows == 40
     points = qmc.LatinHypercube(3, rng=7).random(40)
     clearance = qmc.scale(points[:, :1], 0.2e-3, 1e-3)[:, 0]
@@ -121,8 +116,8 @@ def test_a_sample_is_the_latin_hypercube_of_scipy(tmp_path: Path) -> None:
     assert column(found, "steps_per_revolution") == [90 + int(10 * share) for share in points[:, 2]]
 
 
-def test_each_share_of_a_sampled_range_is_met_once(tmp_path: Path) -> None:
-    found = plan(tmp_path, SAMPLE)
+def test_each_share_of_a_sampled_range_is_met_once() -> None:
+    found = plan(SAMPLE)
     clearance = (np.array(column(found, "belt.guide_clearance")) - 0.2e-3) / 0.8e-3
     stiffness = (np.log10(np.array(column(found, "belt.bending_stiffness"))) + 1.0) / 2.0
     for shares in (clearance, stiffness):
@@ -131,14 +126,14 @@ def test_each_share_of_a_sampled_range_is_met_once(tmp_path: Path) -> None:
     assert [int(np.sum(steps == value)) for value in range(90, 100)] == [4] * 10
 
 
-def test_another_seed_is_another_sample(tmp_path: Path) -> None:
-    one = column(plan(tmp_path, SAMPLE), "belt.guide_clearance")
-    assert one == column(plan(tmp_path, SAMPLE), "belt.guide_clearance")
-    assert one != column(plan(tmp_path, SAMPLE.replace("= 7", "= 8")), "belt.guide_clearance")
+def test_another_seed_is_another_sample() -> None:
+    one = column(plan(SAMPLE), "belt.guide_clearance")
+    assert one == column(plan(SAMPLE), "belt.guide_clearance")
+    assert one != column(plan(SAMPLE.replace("= 7", "= 8")), "belt.guide_clearance")
 
 
-def test_a_grid_meets_every_point_of_a_sample(tmp_path: Path) -> None:
-    found = plan(tmp_path, '[grid]\n"shaft.speed" = [50.0, 60.0, 70.0]\n' + SAMPLE)
+def test_a_grid_meets_every_point_of_a_sample() -> None:
+    found = plan('[grid]\n"shaft.speed" = [50.0, 60.0, 70.0]\n' + SAMPLE)
     assert found.rows == 120
     assert column(found, "shaft.speed") == [50.0] * 40 + [60.0] * 40 + [70.0] * 40
     clearance = column(found, "belt.guide_clearance")
@@ -150,7 +145,6 @@ def test_a_grid_meets_every_point_of_a_sample(tmp_path: Path) -> None:
 # ---- mistakes
 
 GRID = '[grid]\n"shaft.speed" = ["500 rpm", "600 rpm"]\n"belt.guide_clearance" = ["0.2 mm", "1 mm"]\n'
-DRIVEN = SCENE + '\n[inputs]\n"belt.guide_clearance" = [[0, "0.3 mm"], [1, "1 mm"]]\n'
 
 
 IN_GRID = [
@@ -233,91 +227,72 @@ IN_MAP = [
 ]
 
 
+IN_HEAD = [
+    ({"lowest_speed_limit": "lowest_sped_limit"}, "values: belt has no output 'lowest_sped_limit'"),
+    ({'["belt.lowest_speed_limit"]': '"belt.margin"'}, "values = 'belt.margin' is not a list"),
+    ({"scene.toml": "scen.toml"}, "scen.toml: cannot be read (No such file"),
+    ({"scene =": "sceen ="}, "sceen is unknown; did you mean 'scene'?"),
+    ({'scene = "scene.toml"\n': ""}, 'a sweep must name its scene: scene = "loom.toml"'),
+    ({'"Swept"': ""}, "not valid TOML"),
+]
+IN_SCENE = [
+    (
+        '[[claims]]\nkind = "above"\nsignal = "belt.margn"\nbound = 0\n',
+        "belt has no output 'margn'; did you mean 'margin'",
+    ),
+    (
+        '\n[inputs]\n"belt.guide_clearance" = [[0, "0.3 mm"], [1, "1 mm"]]\n',
+        "belt.guide_clearance cannot be set, it is driven along a table",
+    ),
+]
+
+
 @pytest.mark.parametrize(
-    ("text", "words"),
+    ("files", "words"),
     [
-        *(("[grid]\n" + text, words) for text, words in IN_GRID),
-        *ELSEWHERE,
-        *((f"{GRID}[map]\n{text}", words) for text, words in IN_MAP),
+        *(({"text": "[grid]\n" + text}, words) for text, words in IN_GRID),
+        *(({"text": text}, words) for text, words in ELSEWHERE),
+        *(({"text": f"{GRID}[map]\n{text}"}, words) for text, words in IN_MAP),
+        *(({"head": HEAD.replace(*each.popitem())}, words) for each, words in IN_HEAD),
+        *(({"scene": SCENE + more}, words) for more, words in IN_SCENE),
     ],
 )
-def test_a_mistake_is_one_line_that_says_what_would_be_right(tmp_path: Path, text: str, words: str) -> None:
-    path = written(tmp_path, text)
+def test_a_mistake_is_one_line_that_says_what_would_be_right(files: dict[str, str], words: str) -> None:
     with pytest.raises(LoomfmuError) as caught:
-        plans.load(path)
-    assert str(caught.value).startswith(f"{path}: ")
+        plans.load(sweep_file(**{"text": GRID} | files))
+    assert str(caught.value).startswith("swept.toml: ")
     assert words in str(caught.value)
     assert "\n" not in str(caught.value)
 
 
-def test_mistakes_outside_of_the_axes_are_found_too(tmp_path: Path) -> None:
-    for head, words in (
-        (
-            HEAD.replace("lowest_speed_limit", "lowest_sped_limit"),
-            "values: belt has no output 'lowest_sped_limit'",
-        ),
-        (
-            HEAD.replace('["belt.lowest_speed_limit"]', '"belt.margin"'),
-            "values = 'belt.margin' is not a list",
-        ),
-        (HEAD.replace("scene.toml", "scen.toml"), "scen.toml: cannot be read (No such file"),
-        (HEAD.replace("scene =", "sceen ="), "sceen is unknown; did you mean 'scene'?"),
-        (HEAD.replace('scene = "scene.toml"\n', ""), 'a sweep must name its scene: scene = "loom.toml"'),
-        ("title = \n", "not valid TOML"),
-    ):
-        path = written(tmp_path, GRID, head=head)
-        with pytest.raises(LoomfmuError, match=r"swept\.toml: ") as caught:
-            plans.load(path)
-        assert words in str(caught.value)
+def test_a_file_that_is_missing_is_named() -> None:
     with pytest.raises(LoomfmuError, match=r"missing\.toml: cannot be read"):
-        plans.load(tmp_path / "missing.toml")
+        plans.load("missing.toml")
 
 
-def test_a_scene_with_a_claim_that_cannot_be_judged_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(LoomfmuError, match="belt has no output 'margn'; did you mean 'margin'"):
-        plan(tmp_path, GRID, SCENE + '[[claims]]\nkind = "above"\nsignal = "belt.margn"\nbound = 0\n')
-
-
-def test_an_input_that_the_scene_drives_cannot_be_varied(tmp_path: Path) -> None:
-    with pytest.raises(
-        LoomfmuError, match=r"belt\.guide_clearance cannot be set, it is driven along a table"
-    ):
-        plan(tmp_path, GRID, DRIVEN)
-
-
-def test_nor_can_a_wired_one_in_the_words_of_set(tmp_path: Path) -> None:
+def test_nor_can_a_wired_one_in_the_words_of_set() -> None:
     with pytest.raises(LoomfmuError) as by_set:
         scenes.parse(SCENE, overrides={"belt.travel": 3})
     with pytest.raises(LoomfmuError) as by_sweep:
-        plan(tmp_path, '[grid]\n"belt.travel" = [3.0]\n')
+        plan('[grid]\n"belt.travel" = [3.0]\n')
     assert str(by_sweep.value).endswith(f"grid: {by_set.value}")
 
 
-@pytest.mark.parametrize(
-    "key",
-    [
-        "machine",
-        "loom.machine",
-        "weft.machine",
-        "head",
-        "grid",
-        "coupling",
-        "steps_per_revolution",
-        "belt.guide_clearance",
-        "belt.prescribe_length_factor",
-        "duration",
-        "belt.margin",
-        "title",
-        "record",
-        "revolutions",
-        "loom.weave",
-        "shaft.machine",
-        "belt.travel",
-        "belt.fmu",
-        "belt.units",
-    ],
-)
-def test_a_sweep_varies_what_set_takes_and_nothing_else(tmp_path: Path, key: str) -> None:
+def taken(read: Callable[[], object]) -> bool:
+    try:
+        read()
+    except LoomfmuError:
+        return False
+    return True
+
+
+KEYS = """machine loom.machine weft.machine head grid coupling steps_per_revolution belt.guide_clearance
+    belt.prescribe_length_factor duration belt.margin title record revolutions loom.weave shaft.machine
+    belt.travel belt.fmu belt.units"""
+
+
+@pytest.mark.parametrize("key", KEYS.split())
+def test_a_sweep_varies_what_set_takes_and_nothing_else(key: str) -> None:
     values = {
         "machine": "WL450-3600",
         "head": "GS900 left",
@@ -329,50 +304,42 @@ def test_a_sweep_varies_what_set_takes_and_nothing_else(tmp_path: Path, key: str
         "belt.fmu": "x.fmu",
     }
     value = values.get(key, values.get(key.rpartition(".")[2], 10))
-
-    def taken(read: Callable[[], object]) -> bool:
-        try:
-            read()
-        except LoomfmuError:
-            return False
-        return True
-
     shown = str(value).lower() if isinstance(value, bool) else repr(value)
-    swept = taken(lambda: plan(tmp_path, f'[grid]\n"{key}" = [{shown}]\n'))
+    swept = taken(lambda: plan(f'[grid]\n"{key}" = [{shown}]\n'))
     # a weave changes which FMUs there are: --set takes it, a sweep does not
     assert swept is (key != "loom.weave" and taken(lambda: scenes.parse(SCENE, overrides={key: value})))
 
 
-def test_a_machine_for_the_whole_loom_goes_by_both_its_names(tmp_path: Path) -> None:
+def test_a_machine_for_the_whole_loom_goes_by_both_its_names() -> None:
     for key in ("machine", "loom.machine"):
-        found = plan(tmp_path, f'[grid]\n"{key}" = ["WL450-3600", "WL800-3600"]\n')
+        found = plan(f'[grid]\n"{key}" = ["WL450-3600", "WL800-3600"]\n')
         assert found.settings(range(1, 2)) == [{"weft.machine": "WL800-3600", "belt.machine": "WL800-3600"}]
 
 
-def test_values_without_effect_are_refused_unless_another_axis_switches_them_on(tmp_path: Path) -> None:
+def test_values_without_effect_are_refused_unless_another_axis_switches_them_on() -> None:
     factor = '"belt.prescribed_length_factor" = [0.8, 0.9]\n'
     with pytest.raises(
         LoomfmuError, match=r"grid: belt\.prescribed_length_factor has no effect: set belt\.prescribe"
     ):
-        plan(tmp_path, f"[grid]\n{factor}")
+        plan(f"[grid]\n{factor}")
     switch = '"belt.prescribe_length_factor" = [true, false]\n'
-    assert plan(tmp_path, f"[grid]\n{factor}{switch}").rows == 4
-    assert plan(tmp_path, f"[set]\n{switch.replace('[true, false]', 'true')}[grid]\n{factor}").rows == 2
+    assert plan(f"[grid]\n{factor}{switch}").rows == 4
+    assert plan(f"[set]\n{switch.replace('[true, false]', 'true')}[grid]\n{factor}").rows == 2
 
 
-def test_numbers_without_unit_are_doubted_once_and_converted_ones_never(tmp_path: Path) -> None:
+def test_numbers_without_unit_are_doubted_once_and_converted_ones_never() -> None:
     doubt = 'shaft.speed = 480 is read as 480 rad/s = 4583.662 rev/min; write "480 rev/min" if that is meant'
-    assert plan(tmp_path, '[grid]\n"shaft.speed" = [50.0, 480, "600 rpm"]\n').notes == (doubt,)
-    assert plan(tmp_path, '[sample]\ncount=2\nseed=1\n"shaft.speed" = [50.0, 480]\n').notes == (doubt,)
-    found = plan(tmp_path, '[grid]\n"shaft.speed" = ["4000 rpm", "4583 rpm"]\n')
+    assert plan('[grid]\n"shaft.speed" = [50.0, 480, "600 rpm"]\n').notes == (doubt,)
+    assert plan('[sample]\ncount=2\nseed=1\n"shaft.speed" = [50.0, 480]\n').notes == (doubt,)
+    found = plan('[grid]\n"shaft.speed" = ["4000 rpm", "4583 rpm"]\n')
     assert found.notes == ()
     assert scenes.parse(SCENE, overrides=found.settings(range(1))[0]).notes == ()
 
 
-def test_too_many_combinations_are_refused(tmp_path: Path) -> None:
+def test_too_many_combinations_are_refused() -> None:
     text = "".join(
         f'"belt.{key}" = {{ from = 0.1, to = 0.2, count = 1000 }}\n'
         for key in ("bending_stiffness", "head_mass", "head_length")
     )
     with pytest.raises(LoomfmuError, match="1000000000 combinations; the limit is 10000000"):
-        plan(tmp_path, "[grid]\n" + text)
+        plan("[grid]\n" + text)

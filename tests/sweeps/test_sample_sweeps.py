@@ -23,10 +23,8 @@ def test_there_is_a_test_for_each() -> None:
     ]
 
 
-def test_safe_speed_falls_with_wear_and_is_that_of_the_design(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    output = tmp_path / "out"
+def test_safe_speed_falls_with_wear_and_is_that_of_the_design(capsys: pytest.CaptureFixture[str]) -> None:
+    output = Path("out")
     assert main(["sweep", str(SWEEPS / "safe_speed.toml"), "--output", str(output), "--processes", "1"]) == 1
     assert "70 combinations: 38 hold and 32 fail" in capsys.readouterr().out
     table = pq.read_table(output / "table.parquet")
@@ -40,8 +38,8 @@ def test_safe_speed_falls_with_wear_and_is_that_of_the_design(
     assert (output / "map.png").stat().st_size > 10_000
 
 
-def test_stiff_springs_keep_the_carrier_off_its_stops(tmp_path: Path) -> None:
-    output = tmp_path / "out"
+def test_stiff_springs_keep_the_carrier_off_its_stops() -> None:
+    output = Path("out")
     assert main(["sweep", str(SWEEPS / "damper.toml"), "--output", str(output), "--processes", "1"]) == 1
     table = pq.read_table(output / "table.parquet")
     assert table.num_rows == 64 and table["error"].null_count == 64
@@ -56,21 +54,21 @@ def test_stiff_springs_keep_the_carrier_off_its_stops(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_clearance_matters_most_for_the_belt_and_the_law_for_the_dwell(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     short = (SWEEPS / "what_matters.toml").read_text().replace("samples = 256", "samples = 64")
-    path = tmp_path / "what_matters.toml"
+    path = Path("what_matters.toml")
     path.write_text(short.replace("../wl680_3600.toml", str(SWEEPS.parent / "wl680_3600.toml")))
-    assert main(["sweep", str(path), "--output", str(tmp_path / "out"), "--processes", "1"]) == 1
+    assert main(["sweep", str(path), "--output", "out", "--processes", "1"]) == 1
     said = " ".join(capsys.readouterr().out.split())
     assert "distance of the belt keeps a margin of 10 %: lowest margin: belt.guide_clearance 0." in said
     assert re.search(r"warp beyond 6 mm: dobby\.speed_reduction [\d.]+ ± [\d.]+ distance of", said)  # alone
-    assert (tmp_path / "out" / "sensitivity.png").stat().st_size > 10_000
+    assert Path("out/sensitivity.png").stat().st_size > 10_000
 
 
 @pytest.mark.slow
-def test_a_bow_over_the_whole_span_deflects_farther_than_the_belts_own(tmp_path: Path) -> None:
-    output = tmp_path / "out"
+def test_a_bow_over_the_whole_span_deflects_farther_than_the_belts_own() -> None:
+    output = Path("out")
     assert main(["sweep", str(SWEEPS / "belt_motion.toml"), "--output", str(output), "--processes", "1"]) == 1
     table = pq.read_table(output / "table.parquet")
     assert table.num_rows == 162 and table["error"].null_count == 162

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from sweep_files import written
+from sweep_files import sweep_file, swept
 
-from loomfmu import LoomfmuError, sweep
+from loomfmu import LoomfmuError, evaluate, sweep
 from loomfmu.cli import main
 
 # 1 - margin = mass speed^2 / stiffness, times what stays: a product of powers of independent values
@@ -25,14 +25,8 @@ POWERS = {
 WANTED = '[sensitivity]\nmethod = "{method}"\nsamples = {samples}\nseed = 3\noutputs = ["claim_1.distance"]\n'
 
 
-@pytest.fixture(autouse=True)
-def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-
-
-def test_indices_of_sobol_are_those_of_the_product(tmp_path: Path) -> None:
-    path = written(tmp_path, WANTED.format(method="sobol", samples=256) + RANGES)
-    found = sweep(path, processes=1)
+def test_indices_of_sobol_are_those_of_the_product() -> None:
+    found = swept(WANTED.format(method="sobol", samples=256) + RANGES)
     assert found.rows == 256 * 5 and not found.traces
     means, squares = [], []
     for low, high, power in POWERS.values():
@@ -52,25 +46,19 @@ def test_indices_of_sobol_are_those_of_the_product(tmp_path: Path) -> None:
         assert abs(influence.indices["ST"][place] - total) <= influence.indices["ST_conf"][place]
         assert influence.indices["ST_conf"][place] < 0.1
     assert found.sensitivity.brief[0][1].startswith("shaft.speed 0.")
-    assert sorted(each.name for each in Path("results/swept").iterdir()) == [
-        "sensitivity.csv",
-        "sensitivity.png",
-        "sweep.json",
-        "table.parquet",
-    ]
+    files = "sensitivity.csv sensitivity.png sweep.json table.parquet"
+    assert sorted(each.name for each in Path("out").iterdir()) == files.split()
 
 
-def test_mean_changes_of_morris_are_those_of_the_product(tmp_path: Path) -> None:
-    path = written(tmp_path, WANTED.format(method="morris", samples=100) + RANGES)
-    found = sweep(path, processes=1)
+def test_mean_changes_of_morris_are_those_of_the_product() -> None:
+    found = swept(WANTED.format(method="morris", samples=100) + RANGES)
     assert found.rows == 100 * 4
     assert found.sensitivity is not None
     (influence,) = found.sensitivity.outputs
     grids = {key: np.linspace(low, high, 4) ** power for key, (low, high, power) in POWERS.items()}
     # what stays: the margin at the scene's own values
-    from loomfmu import evaluate
 
-    own = 1.0 - evaluate(tmp_path / "scene.toml").claims[0].worst
+    own = 1.0 - evaluate(Path("scene.toml")).claims[0].worst
     mass, speed, stiffness = 110.5, 600.0, 0.25
     stays = own * stiffness / (mass * speed**2)
     for place, (key, values) in enumerate(grids.items()):
@@ -82,11 +70,9 @@ def test_mean_changes_of_morris_are_those_of_the_product(tmp_path: Path) -> None
         assert influence.indices["mu_star"][place] == pytest.approx(abs(expected), abs=4.0 * spread)
 
 
-def test_the_command_prints_what_matters_and_what_does_not(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_command_prints_what_matters_and_what_does_not(capsys: pytest.CaptureFixture[str]) -> None:
     text = '[sensitivity]\nmethod = "morris"\nsamples = 8\n"shaft.speed" = ["500 rpm", "600 rpm"]\n'
-    path = written(tmp_path, text + '"weft.moving_mass" = ["90 g", "120 g"]\n')
+    path = sweep_file(text + '"weft.moving_mass" = ["90 g", "120 g"]\n')
     for _again in range(2):  # from the rows that are there
         assert main(["sweep", str(path), "--processes", "1"]) == 0
     said = capsys.readouterr().out
@@ -100,55 +86,50 @@ def test_the_command_prints_what_matters_and_what_does_not(
     assert rows[0]["note"] == "depends on none of them" and rows[2]["mu_star"] != ""
 
 
-def test_an_output_without_a_value_in_some_rows_says_so(tmp_path: Path) -> None:
+def test_an_output_without_a_value_in_some_rows_says_so() -> None:
     scene = (
         'title = "x"\nrevolutions = 2\nsteps_per_revolution = 90\n[loom]\nmachine = "WL680-3600"\n'
         'head = "G6300 left"\nweave = "10/01"\n[[claims]]\nkind = "clear_shed"\nheald = "heald_1"\n'
         'clearance = "6 mm"\nat_least = "90 deg"\n'
     )
     text = '[sensitivity]\nmethod = "morris"\nsamples = 8\n"heald.stroke" = ["10 mm", "98 mm"]\n'
-    path = written(tmp_path, text + '"dobby.speed_reduction" = [0.4, 0.6]\n', scene, 'scene = "scene.toml"\n')
-    found = sweep(path, processes=1)
+    ranges = '"dobby.speed_reduction" = [0.4, 0.6]\n'
+    found = swept(text + ranges, scene=scene, head='scene = "scene.toml"\n')
     assert found.sensitivity is not None and found.errors > 0
     assert f"no indices: no value in {found.errors} of 24 rows" == found.sensitivity.outputs[0].note
 
 
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        ("method = 'sobel'\nsamples = 8", "sensitivity.method = 'sobel' is unknown; did you mean 'sobol'?"),
-        ("samples = 100", "sensitivity.samples = 100 must be a power of 2 for sobol, such as 128"),
-        ("method = 'morris'", "sensitivity.samples is missing"),
-        ("samples = 8\noutputs = ['claim_7.distance']", "'claim_7.distance' is not a column of results"),
-        ("samples = 8\noutputs = []", "is not a list such as"),
-        ("samples = 8\nmethods = 'sobol'", "'methods' cannot be set"),
-    ],
-)
-def test_what_is_refused(tmp_path: Path, text: str, said: str) -> None:
-    path = written(tmp_path, f"[sensitivity]\n{text}\n{RANGES}")
-    with pytest.raises(LoomfmuError) as caught:
-        sweep(path)
-    assert said in str(caught.value) and str(caught.value).startswith(f"{path}: ")
+SPEEDS = '"shaft.speed" = ["500 rpm", "600 rpm"]'
 
 
 @pytest.mark.parametrize(
     ("text", "said"),
     [
         (
-            '[sensitivity]\nsamples = 8\n"shaft.speed" = ["500 rpm", "600 rpm"]',
-            "sensitivity needs two ranges or more",
+            f"method = 'sobel'\nsamples = 8{RANGES}",
+            "sensitivity.method = 'sobel' is unknown; did you mean 'sobol'?",
+        ),
+        (f"samples = 100{RANGES}", "sensitivity.samples = 100 must be a power of 2 for sobol, such as 128"),
+        (f"method = 'morris'{RANGES}", "sensitivity.samples is missing"),
+        (
+            f"samples = 8\noutputs = ['claim_7.distance']{RANGES}",
+            "'claim_7.distance' is not a column of results",
+        ),
+        (f"samples = 8\noutputs = []{RANGES}", "is not a list such as"),
+        (f"samples = 8\nmethods = 'sobol'{RANGES}", "'methods' cannot be set"),
+        (f"samples = 8\n{SPEEDS}", "sensitivity needs two ranges or more"),
+        (
+            f"samples = 8{RANGES}[grid]\n'belt.guide_clearance' = ['0.2 mm']",
+            "[sensitivity] chooses the rows itself; leave out [grid]",
         ),
         (
-            f"[sensitivity]\nsamples = 8\n{RANGES}[grid]\n'belt.guide_clearance' = ['0.2 mm']",
-            r"\[sensitivity\] chooses the rows itself; leave out \[grid\]",
-        ),
-        (
-            '[sensitivity]\nsamples = 8\n"shaft.speed" = ["600 rpm", "500 rpm"]',
+            'samples = 8\n"shaft.speed" = ["600 rpm", "500 rpm"]',
             "sensitivity.shaft.speed: 600 rev/min is not below 500 rev/min",
         ),
-        ('[sensitivity]\nsamples = 8\n"dobby.law" = ["uniform", "table"]', "has no instance 'dobby'"),
+        ('samples = 8\n"dobby.law" = ["uniform", "table"]', "has no instance 'dobby'"),
     ],
 )
-def test_rows_of_another_kind_and_empty_ranges_are_refused(tmp_path: Path, text: str, said: str) -> None:
-    with pytest.raises(LoomfmuError, match=said):
-        sweep(written(tmp_path, text))
+def test_what_is_refused(text: str, said: str) -> None:
+    with pytest.raises(LoomfmuError) as caught:
+        sweep(sweep_file(f"[sensitivity]\n{text}"))
+    assert said in str(caught.value) and str(caught.value).startswith("swept.toml: ")

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from ..display.printed import complain, say, warn
 from ..errors import LoomfmuError
 from .printing import print_verdicts, revolutions
-from .shared import add_force, add_platform, add_scene, add_set, ending, pairs, platforms
+from .shared import add_force, add_platform, add_scene, add_set, add_vary, ending, pairs, platforms
 from .status import BEGUN, status_of
 
 if TYPE_CHECKING:
@@ -185,13 +185,10 @@ def add_page(commands: Any) -> None:
     """Add `page` and its arguments."""
     command = commands.add_parser("page", help="write a scene as a page in which its FMUs run (HTML)")
     command.add_argument("scene", type=ending(".toml"), metavar="SCENE.toml")
-    command.add_argument(
-        "--vary",
-        action="append",
-        default=[],
-        metavar="INSTANCE.VARIABLE=LOW..HIGH",
-        help="what the page has a slider for, such as shaft.speed=400rpm..800rpm (repeatable); without a"
-        " range 20 %% around the scene's value, or its choices; the shaft's speed by default",
+    add_vary(
+        command,
+        "what the page has a slider for, such as shaft.speed=400rpm..800rpm (repeatable); without a range"
+        " 20 %% around the scene's value, or its choices; the shaft's speed by default",
     )
     add_set(command)
     command.add_argument(

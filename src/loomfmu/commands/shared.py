@@ -38,6 +38,14 @@ def add_set(command: argparse.ArgumentParser) -> None:
     )
 
 
+def add_vary(command: argparse.ArgumentParser, about: str, required: bool = False) -> None:
+    """The variables that a command varies; where one is `required`, its range need not be given."""
+    metavar = "INSTANCE.VARIABLE[=LOW..HIGH]" if required else "INSTANCE.VARIABLE=LOW..HIGH"
+    command.add_argument(
+        "--vary", action="append", default=[], required=required, metavar=metavar, help=about
+    )
+
+
 def add_place(command: argparse.ArgumentParser, name: str) -> None:
     """Add the options that say where many runs go and which processes make them."""
     command.add_argument("--output", metavar="DIR", help=f"folder for the results; results/{name} by default")

@@ -1,13 +1,14 @@
 """The commands that run a scene many times, with their arguments."""
 
 import argparse
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
 from ..display.printed import say, warn
 from ..errors import LoomfmuError
 from ..files import check_target
-from .shared import add_force, add_place, add_scene, add_set, ending, pairs
+from .shared import add_force, add_place, add_scene, add_set, add_vary, ending, pairs
 
 
 def add_sweep(commands: Any) -> None:
@@ -43,13 +44,11 @@ def add_limit(commands: Any) -> None:
         epilog="Exit status: 0 all claims hold in some range; 1 in none; 2 bad input or a failed FMU.",
     )
     add_scene(command)
-    command.add_argument(
-        "--vary",
-        action="append",
+    add_vary(
+        command,
+        "what is varied, such as shaft.speed or shaft.speed=300rpm..900rpm; a second one gives the limits of"
+        " the first at values of the second",
         required=True,
-        metavar="INSTANCE.VARIABLE[=LOW..HIGH]",
-        help="what is varied, such as shaft.speed or shaft.speed=300rpm..900rpm; a second one gives the"
-        " limits of the first at values of the second",
     )
     command.add_argument(
         "--from",
@@ -93,14 +92,25 @@ def limit(options: argparse.Namespace) -> int:
         progress=True,
         **{name: count for name, count in counts.items() if count is not None},
     )
-    try:  # first the file: the reader of our output may have had enough
-        if output is not None:
-            limit_tables.write(found, output, inputs, options.force)
+    writers = {output: lambda path: limit_tables.write(found, path, inputs, options.force)}
+    return _reported(found, limit_tables.show, writers)
+
+
+def _reported(
+    found: Any, show: Callable[[Any], None], writers: Mapping[Path | None, Callable[[Path], object]]
+) -> int:
+    """Write the files that were asked for, show what was found, whether they could be, and return the status.
+
+    First the files: the reader of our output may have had enough.
+    """
+    files = {path: write for path, write in writers.items() if path is not None}
+    try:
+        for path, write in files.items():
+            write(path)
     finally:
         warn(found.warnings)
-        limit_tables.show(found)
-    if output is not None:
-        say(f"written: {output}")
+        show(found)
+    say(*(f"written: {path}" for path in files))
     return 0 if found else 1
 
 
@@ -113,12 +123,9 @@ def add_tolerances(commands: Any) -> None:
         " 2 bad input or a failed FMU.",
     )
     add_scene(command)
-    command.add_argument(
-        "--vary",
-        action="append",
-        default=[],
-        metavar="INSTANCE.VARIABLE=LOW..HIGH",
-        help="a tolerance, such as belt.guide_clearance=0.2mm..0.5mm (repeatable); those of the scene's"
+    add_vary(
+        command,
+        "a tolerance, such as belt.guide_clearance=0.2mm..0.5mm (repeatable); those of the scene's"
         " [tolerances] by default",
     )
     add_set(command)
@@ -138,15 +145,8 @@ def tolerances(options: argparse.Namespace) -> int:
     if picture is not None:  # before the runs, not after them
         pictures.check(picture, inputs, options.force)
     found = find(options.scene, vary=options.vary, set=pairs(options.overrides), progress=True)
-    try:
-        if picture is not None:
-            pictures.save(draw(found), picture, found.title, inputs, options.force)
-    finally:
-        warn(found.warnings)
-        show(found)
-    if picture is not None:
-        say(f"written: {picture}")
-    return 0 if found else 1
+    drawn = {picture: lambda path: pictures.save(draw(found), path, found.title, inputs, options.force)}
+    return _reported(found, show, drawn)
 
 
 def add_optimize(commands: Any) -> None:
@@ -187,12 +187,10 @@ def add_fit(commands: Any) -> None:
         metavar="DATA.csv|h5",
         help="columns with units, such as shaft_angle [deg],damper_1.displacement [mm]; or a trace",
     )
-    command.add_argument(
-        "--vary",
-        action="append",
+    add_vary(
+        command,
+        "a parameter to find, such as damper_1.spring_stiffness=1N/mm..20N/mm (repeatable)",
         required=True,
-        metavar="INSTANCE.VARIABLE[=LOW..HIGH]",
-        help="a parameter to find, such as damper_1.spring_stiffness=1N/mm..20N/mm (repeatable)",
     )
     command.add_argument(
         "--signal",
@@ -227,7 +225,7 @@ def fit(options: argparse.Namespace) -> int:
     from ..report import pictures
     from ..studies import rewritten
     from ..studies.fitting.fit import fit as find
-    from ..studies.fitting.fitted_values import show
+    from ..studies.fitting.fitted_values import draw, show
 
     inputs = [Path(options.scene), Path(options.data)]
     output, picture = (Path(each) if each else None for each in (options.output, options.picture))
@@ -248,15 +246,8 @@ def fit(options: argparse.Namespace) -> int:
         offset=options.offset,
         loss=options.loss,
     )
-    try:
-        if output is not None:
-            found.write(output, options.force)
-        if picture is not None:
-            from ..studies.fitting.picture import draw
-
-            pictures.save(draw(found), picture, found.title, inputs, options.force)
-    finally:
-        warn(found.warnings)
-        show(found)
-    say(*(f"written: {path}" for path in (output, picture) if path is not None))
-    return 0 if found else 1
+    writers = {
+        output: lambda path: found.write(path, options.force),
+        picture: lambda path: pictures.save(draw(found), path, found.title, inputs, options.force),
+    }
+    return _reported(found, show, writers)

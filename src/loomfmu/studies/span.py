@@ -42,7 +42,7 @@ class Span:
     @property
     def unit(self) -> str:
         """The unit that people read it in, or that of its FMU if loomfmu does not know that."""
-        return self.varied.unit if self.varied.display == "1" else self.varied.display
+        return self.varied.shown_unit
 
     @property
     def factor(self) -> float:

@@ -6,34 +6,44 @@
 import contextlib
 import json
 import os
-from collections.abc import Iterable, Iterator
+import re
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import Protocol
 
 from ..errors import LoomfmuError
 from ..files import ANY, cannot_write, check_target, replace_file
 
 LOCK = "lock"
+PARTIAL = r"\..*\.partial"  # names of files that are being written
 
 
-class Contents(Protocol):
-    """The files that a sweep or a search writes into a directory."""
+Names = tuple[Path, str]  # a folder, and a regular expression of names in it
 
-    directory: Path
 
-    @property
-    def targets(self) -> list[Path]:
-        """The files that are written under names of their own."""
+class Contents:
+    """The files that a sweep or a search writes into a directory.
+
+    `targets` have names of their own, `numbered` ones are many; `unfinished` are those that a kill leaves.
+    """
+
+    def __init__(
+        self, directory: Path, targets: Sequence[Path], numbered: Sequence[Names], unfinished: Sequence[Names]
+    ):
+        self.directory, self.targets = directory, targets
+        self._numbered, self._unfinished = numbered, unfinished
 
     @property
     def folders(self) -> list[Path]:
-        """The folders of all others."""
+        """The folders below the directory."""
+        return sorted({folder for folder, _names in self._numbered} - {self.directory})
 
     def results(self) -> list[Path]:
         """Return the files that exist under the names of its results."""
+        return [path for path in self.targets if path.exists()] + files(self._numbered)
 
     def partial(self) -> list[Path]:
         """Return the partial files that a killed sweep or search has left."""
+        return files(self._unfinished)
 
 
 @contextlib.contextmanager
@@ -92,9 +102,14 @@ def _known(path: Path) -> str | None:
         return None
 
 
-def files(folder: Path, pattern: str) -> list[Path]:
-    """The files of a folder with such names, and links to files: a folder may be called like a file."""
-    return [path for path in folder.glob(pattern) if path.is_file() or path.is_symlink()]
+def files(several: Iterable[Names]) -> list[Path]:
+    """The files of folders with such names, and links to files: a folder may be called like a file."""
+    return [
+        path
+        for folder, names in several
+        for path in folder.glob("*")
+        if re.fullmatch(names, path.name) and (path.is_file() or path.is_symlink())
+    ]
 
 
 @contextlib.contextmanager

@@ -72,14 +72,14 @@ def _header(text: str, tables: dict[str, Any], path: Path, what: str) -> Header:
         raise LoomfmuError(f'a {what} must name its scene: scene = "loom.toml", relative to the {what} file')
     flavour = tables.get("flavour", "native")
     check_flavour(flavour)
-    scene_path = _beside(path, tables["scene"])
+    scene_path = _path_named(path, tables["scene"])
     fixed = flattened(tables.get("set", {}), "set")
     scene = checked_claims(read_scene(scene_path, fixed)).scene
     title = text_in(tables, "title", path.stem)
     return Header(title, path.stem, text, scene_path, scene, flavour, fixed)
 
 
-def _beside(path: Path, name: str) -> Path:
+def _path_named(path: Path, name: str) -> Path:
     """Return the path of a file that another one names; relative to the current folder if both are."""
     place = path.parent / name
     return place.resolve() if place.is_absolute() else Path(os.path.relpath(place.resolve()))

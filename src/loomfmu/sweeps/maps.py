@@ -18,7 +18,8 @@ from ..traces.plotting import fixed_style
 from .axes import Axis
 from .plan import SweepPlan
 from .ranking import distance
-from .tables import labels_of
+from .tables import column_of, labels_of
+from .varied import labelled
 
 Floats = NDArray[np.float64]
 
@@ -78,10 +79,10 @@ def draw(plan: SweepPlan, table: Any, path: Path) -> Path | None:
     chosen = np.ones(table.num_rows, dtype=bool)
     for key, value in request.at.items():
         chosen &= np.array([each == value for each in table[key].to_pylist()])
-    values, label = _values(table, request.value)
+    words, unit, values = column_of(table, request.value)
     claims = [each.claim for each in labels_of(table)]
     distances = [(claim, distance(table, number)[chosen]) for number, claim in enumerate(claims)]
-    picture = _Picture(plan, values[chosen], label, distances)
+    picture = _Picture(plan, values[chosen], labelled(words, unit), distances)
     if not np.isfinite(picture.values).any():
         return None
     x = _scale(plan, table, request.x, chosen)
@@ -99,28 +100,13 @@ def draw(plan: SweepPlan, table: Any, path: Path) -> Path | None:
     return path
 
 
-def _values(table: Any, name: str) -> tuple[Floats, str]:
-    """A column as people read it, and its words."""
-    field = table.schema.field(name)
-    about = {key.decode(): text.decode() for key, text in (field.metadata or {}).items()}
-    display = about.get("display_unit", "1")
-    values = table[name].cast("float64").to_numpy() / units.unit(display).factor
-    words = about.get("description", name) if name.startswith("claim_") else name
-    return values, _labelled(words, display, about.get("unit", "1"))
-
-
-def _labelled(words: str, display: str, unit: str) -> str:
-    shown = unit if display == "1" else display  # a unit that is the FMU's alone has no other to be shown in
-    return words if shown == "1" else f"{words} [{shown}]"
-
-
 def _scale(plan: SweepPlan, table: Any, key: str, chosen: NDArray[np.bool_]) -> _Scale:
     axis: Axis = next(axis for axis in plan.axes if axis.key == key)
     column = [value for value, wanted in zip(table[key].to_pylist(), chosen, strict=True) if wanted]
     if axis.numeric:
         factor = units.unit(axis.varied.display).factor if axis.varied.kind == "Real" else 1.0
         at = np.array(column, dtype=np.float64) / factor
-        label = _labelled(key, axis.varied.display, axis.varied.unit)
+        label = labelled(key, axis.varied.shown_unit)
         return _Scale(label, at, np.unique(at), None, axis.logarithmic)
     names = list(dict.fromkeys(axis.values.tolist()))
     at = np.array([names.index(value) for value in column], dtype=np.float64)

@@ -6,9 +6,9 @@ from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Any
 
+from ..cosim.scenes.scene import Scene
 from ..errors import LoomfmuError, shown
 from .pools import Here, Pool, Processes
-from .worker import Planned
 
 
 def check_place(processes: Any, scheduler: Any) -> None:
@@ -33,10 +33,10 @@ def resumable(directory: Path, what: str) -> Iterator[None]:
 
 
 @contextmanager
-def local(plan: Planned, processes: int | None, rows: int) -> Iterator[Pool]:
+def local(scene: Scene, processes: int | None, rows: int) -> Iterator[Pool]:
     """This process where one is enough, unless an FMU may end it; else processes of this machine."""
     workers = min(processes or _cores(), rows)
-    pool: Pool = Processes(workers) if workers > 1 or plan.scene.unprotected else Here()
+    pool: Pool = Processes(workers) if workers > 1 or scene.unprotected else Here()
     with closing(pool):
         yield pool
 

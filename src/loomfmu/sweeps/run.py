@@ -19,10 +19,10 @@ from .place import check_place, cluster, local, resumable
 from .plan import SweepPlan
 from .pools import Pool, Task, WorkerDied
 from .schedule import run_batches
-from .sensitivity import Influences, csv_rows, influences
 from .worker import Batch, Job, job_of, run_trace
 
 if TYPE_CHECKING:
+    from .indices import Influences
     from .store import Store
 
 
@@ -42,7 +42,7 @@ class Sweep:
     map: Path | None
     traces: tuple[Path, ...]
     untraced: dict[int, str]
-    sensitivity: Influences | None = None
+    sensitivity: "Influences | None" = None
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -116,12 +116,12 @@ def sweep(
     plan = plans.load(path)
     from .store import opened
 
-    job = job_of(plan)
+    job = job_of(plan, plan.values)
     directory = path_of(output, "output") if output is not None else Path("results") / plan.name
     with resumable(directory, "rows"):
         fingerprint, inputs = _fingerprint(plan, job), [Path(path), *files_of(plan.scene)]
         with opened(directory, plan, fingerprint, restart, inputs) as store, ExitStack() as pools:
-            here = pools.enter_context(local(plan, processes, plan.rows))
+            here = pools.enter_context(local(plan.scene, processes, plan.rows))
             rows_pool = pools.enter_context(cluster(scheduler)) if scheduler else here
             ran = _run_rows(store, job, rows_pool, progress)
             table = store.finish()
@@ -164,16 +164,17 @@ def _draw(store: "Store", table: Any) -> Path | None:
     return draw(store.plan, table, store.map_path)
 
 
-def _indices(store: "Store", table: Any) -> Influences | None:
+def _indices(store: "Store", table: Any) -> "Influences | None":
     """The indices of the sweep, if it has a `[sensitivity]`, as table and picture."""
     plan = store.plan
     if plan.sensitivity is None:
         return None
+    from .indices import csv_rows, draw, influences
+
     found = influences(plan.sensitivity, table, plan.sample, plan.title)
     write_file(store.indices_path, as_csv(csv_rows(found)).encode(), ANY)
     if installed("plot"):
         from ..report import pictures
-        from .bars import draw
 
         pictures.save(draw(found), store.bars_path, plan.title, overwrite=True)
     return found

@@ -20,28 +20,30 @@ import pyarrow.parquet as pq
 
 from ..errors import LoomfmuError
 from ..files import replace_file
-from .directory import files, owned
+from .directory import PARTIAL, Contents, files, owned
 from .plan import SweepPlan
 from .tables import schema_of, table_of, whole_table
 from .worker import Batch
 
 NAME = re.compile(r"rows_(\d+)_(\d+)\.parquet")
 INDICES_FILE = "sensitivity.csv"
-PARTIAL, TRACE_PARTIAL = ".*.partial", "row_*.h5*.partial"
+BATCH, TRACE_PARTIAL = r"rows_.*\.parquet", r"row_.*\.h5.*\.partial"
 
 
-class Store:
+class Store(Contents):
     """The batches of one sweep. Make it with `opened`."""
 
     def __init__(self, directory: Path, plan: SweepPlan):
-        self.directory = directory
         self.plan = plan
-        self.batches = directory / "batches"
-        self.traces = directory / "traces"
-        self.table_path = directory / "table.parquet"
-        self.map_path = directory / "map.png"
-        self.indices_path = directory / INDICES_FILE
-        self.bars_path = directory / "sensitivity.png"
+        self.batches, self.traces = directory / "batches", directory / "traces"
+        self.table_path, self.map_path = directory / "table.parquet", directory / "map.png"
+        self.indices_path, self.bars_path = directory / INDICES_FILE, directory / "sensitivity.png"
+        super().__init__(
+            directory,
+            targets=(self.table_path, self.map_path, self.indices_path, self.bars_path),
+            numbered=((self.batches, BATCH), (self.traces, r"row_.*\.h5"), (self.traces, TRACE_PARTIAL)),
+            unfinished=((directory, PARTIAL), (self.batches, PARTIAL), (self.traces, TRACE_PARTIAL)),
+        )
 
     def trace_path(self, row: int) -> Path:
         """Return the path of the full trace of a row."""
@@ -101,7 +103,7 @@ class Store:
 
     def tidy(self) -> None:
         """Delete the batches of a sweep that is done: the table has their rows."""
-        for path in files(self.batches, "rows_*.parquet"):
+        for path in files([(self.batches, BATCH)]):
             path.unlink()
         with contextlib.suppress(OSError):  # it holds something that is not ours, or is gone
             self.batches.rmdir()
@@ -114,27 +116,6 @@ class Store:
             raise LoomfmuError(
                 f"{path}: cannot be read ({reason}); delete it to run its rows again"
             ) from None
-
-    @property
-    def targets(self) -> list[Path]:
-        """The files that are written under names of their own."""
-        return [self.table_path, self.map_path, self.indices_path, self.bars_path]
-
-    @property
-    def folders(self) -> list[Path]:
-        """The folders of all others."""
-        return [self.batches, self.traces]
-
-    def results(self) -> list[Path]:
-        """Return the files that exist under the names of a sweep's results."""
-        patterns = ((self.batches, "rows_*.parquet"), (self.traces, "row_*.h5"), (self.traces, TRACE_PARTIAL))
-        found = [path for folder, pattern in patterns for path in files(folder, pattern)]
-        return [path for path in self.targets if path.exists()] + found
-
-    def partial(self) -> list[Path]:
-        """Return the partial files that a killed sweep has left."""
-        patterns = ((self.directory, PARTIAL), (self.batches, PARTIAL), (self.traces, TRACE_PARTIAL))
-        return [path for folder, pattern in patterns for path in files(folder, pattern)]
 
 
 @contextlib.contextmanager

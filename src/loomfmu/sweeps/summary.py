@@ -8,9 +8,9 @@ from ..display import printed
 from ..display.printed import say
 from ..errors import listed
 from ..traces.verdict import FAILS, HOLDS, UNDECIDED
+from .indices import WORDS, Influences
 from .ranking import beyond, worst_rows
 from .run import Sweep
-from .sensitivity import WORDS, Influences
 from .store import INDICES_FILE
 from .tables import claim_columns, labels_of
 

@@ -13,11 +13,14 @@ from typing import Any
 
 import numpy as np
 import pyarrow as pa
+from numpy.typing import NDArray
 
+from .. import units
 from ..cosim.importing.fmus import Port
 from ..version import __version__
 from .axes import Axis
 from .plan import SweepPlan
+from .varied import shown_unit
 from .worker import Batch, ClaimResult, Label
 
 TYPES = {"Real": pa.float64(), "Integer": pa.int64(), "Boolean": pa.bool_(), "Text": pa.string()}
@@ -84,6 +87,16 @@ def _for_pandas(fields: list[Any]) -> dict[str, Any]:
 def labels_of(table: Any) -> tuple[Label, ...]:
     """Return the labels of the claims of a table or of a part of it."""
     return tuple(Label(**each) for each in json.loads(table.schema.metadata[b"claims"]))
+
+
+def column_of(table: Any, name: str) -> tuple[str, str, NDArray[np.float64]]:
+    """The words of a column, the unit that people read it in, and its values in that; NaN for none."""
+    field = table.schema.field(name)
+    about = {key.decode(): text.decode() for key, text in (field.metadata or {}).items()}
+    display = about.get("display_unit", "1")
+    values = table[name].cast("float64").to_numpy() / units.unit(display).factor
+    words = about.get("description", name) if name.startswith("claim_") else name
+    return words, shown_unit(about.get("unit", "1"), display), values
 
 
 def whole_table(plan: SweepPlan, parts: list[Any]) -> Any:

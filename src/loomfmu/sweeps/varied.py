@@ -21,6 +21,16 @@ SECONDS = ("duration", "step")
 COUNTS = ("steps_per_revolution", COARSE)
 
 
+def shown_unit(unit: str, display: str) -> str:
+    """The unit that people read values in; one that is an FMU's alone has no other to be shown in."""
+    return unit if display == "1" else display
+
+
+def labelled(words: str, unit: str) -> str:
+    """Words with a unit in brackets, if there is one."""
+    return words if unit == "1" else f"{words} [{unit}]"
+
+
 @dataclass(frozen=True)
 class Varied:
     """A key of a sweep. `targets` are the keys of the scene that take its value, in SI; `read` checks one.
@@ -38,6 +48,11 @@ class Varied:
     read: Callable[[Any], Value]
     needs_scene: bool = False
     doubt: Callable[[Any], str] = lambda _given: ""
+
+    @property
+    def shown_unit(self) -> str:
+        """The unit that people read it in."""
+        return shown_unit(self.unit, self.display)
 
     def setting(self, value: Value) -> Value:
         """A value as it is set in the scene: it was read and checked already."""

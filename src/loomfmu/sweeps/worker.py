@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 from .. import machines
 from ..cosim.claims.claims import called
@@ -21,7 +21,7 @@ from ..cosim.prepared import Errors, Prepared
 from ..cosim.scenes.scene import Scene
 from ..errors import LoomfmuError, described
 from ..traces import Verdict
-from .header import read_scene
+from .header import Header, read_scene
 
 # the threads of one process share the instances that rest between runs: they take turns
 _turn = threading.Lock()
@@ -77,34 +77,10 @@ class Batch:
     seconds: float
 
 
-class Planned(Protocol):
-    """A plan of a sweep or a search: a scene, and how it is run."""
-
-    @property
-    def path(self) -> Path:
-        """Of the scene."""
-
-    @property
-    def scene(self) -> Scene:
-        """The scene with what is fixed."""
-
-    @property
-    def flavour(self) -> Flavour:
-        """Of its FMUs."""
-
-    @property
-    def fixed(self) -> dict[str, Any]:
-        """Values that stay."""
-
-    @property
-    def values(self) -> tuple[str, ...]:
-        """Signals whose final values are wanted."""
-
-
-def job_of(plan: Planned) -> Job:
-    """Return the job of a plan's workers."""
-    known = identity(plan.scene, plan.flavour)
-    return Job(plan.path.absolute(), tuple(plan.fixed.items()), plan.flavour, plan.values, known)
+def job_of(head: Header, values: tuple[str, ...] = ()) -> Job:
+    """Return the job of the workers of a sweep or a search; `values` are signals whose final values count."""
+    known = identity(head.scene, head.flavour)
+    return Job(head.path.absolute(), tuple(head.fixed.items()), head.flavour, values, known)
 
 
 def identity(scene: Scene, flavour: str) -> str:

@@ -1,7 +1,7 @@
 """Limits: against closed forms and fine sweeps."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -88,23 +88,23 @@ def test_limits_of_all_machines_are_those_of_the_closed_form(machine: str) -> No
     assert of(found, "margin").limits[0].value == pytest.approx(safe * math.sqrt(0.9), rel=FOUND)
 
 
-def test_other_variables_have_limits_too() -> None:
+@pytest.mark.parametrize(
+    ("vary", "solve"),
+    [
+        ("belt.guide_clearance=0.2mm..0.8mm", design.clearance_for),
+        ("belt.head_mass", design.mass_for),
+        ("belt.bending_stiffness", design.stiffness_for),
+    ],
+)
+def test_other_variables_have_limits_too(vary: str, solve: Callable[..., float]) -> None:
     wanted = 650.0 * RPM
-    scene = belt_scene("WL680-3600")
-    given = {"shaft.speed": wanted}
-    clearance = limit(scene, vary="belt.guide_clearance=0.2mm..0.8mm", set=given)
-    assert of(clearance, "speed").limits[0].value == pytest.approx(
-        design.clearance_for(wanted, "WL680-3600"), rel=FOUND
-    )
-    mass = limit(scene, vary="belt.head_mass", set=given)
-    expected = design.mass_for(wanted, "WL680-3600")
-    assert of(mass, "speed").limits[0].value == pytest.approx(expected, rel=FOUND)
-    stiffness = limit(scene, vary="belt.bending_stiffness", set=given)
-    expected = design.stiffness_for(wanted, "WL680-3600")
-    assert of(stiffness, "speed").limits[0].value == pytest.approx(expected, rel=FOUND)
-    assert of(stiffness, "speed").limits[0].begins == "to hold"
-    assert stiffness.ranges[0].below == "margin" and stiffness.ranges[0].above == ""
-    assert stiffness.span.source == "half to twice the scene's 0.25 N.m2"
+    found = limit(belt_scene("WL680-3600"), vary=vary, set={"shaft.speed": wanted})
+    (speed,) = of(found, "speed").limits
+    assert speed.value == pytest.approx(solve(wanted, "WL680-3600"), rel=FOUND)
+    if vary == "belt.bending_stiffness":
+        assert speed.begins == "to hold"
+        assert found.ranges[0].below == "margin" and found.ranges[0].above == ""
+        assert found.span.source == "half to twice the scene's 0.25 N.m2"
 
 
 # ---- claims that are not monotone
@@ -288,22 +288,9 @@ def test_a_scene_without_claims_has_no_limits() -> None:
 
 def test_a_range_in_which_a_claim_is_undecided_is_no_range_in_which_it_holds() -> None:
     """With 24 steps a blow of 0.34 m/s held; with 2880 it is 0.55 m/s, beyond the bound."""
-    text = """
-revolutions = 2
-steps_per_revolution = 24
-[loom]
-machine = "WL680-3600"
-head = "G6300 left"
-weave = "10/01"
-dampers = true
-play = true
-[shaft]
-speed = "574 rpm"
-[[claims]]
-kind = "heald_blows"
-play = "play_1"
-at_most = "0.4 m/s"
-"""
+    text = LOOM.replace("= 360", "= 24").replace("revolutions = 4", "revolutions = 2")
+    text += 'weave = "10/01"\ndampers = true\nplay = true\n[shaft]\nspeed = "574 rpm"\n'
+    text += claims({"kind": "heald_blows", "play": "play_1", "at_most": "0.4 m/s"})
     found = limit(parse(text, "blows"), vary="shaft.speed=574rpm..575.9rpm", points=3)
     assert not found and not found.claims[0].ranges
     assert "'hardest blow (play_1.hardest_blow)' is undecided: " in str(found)
@@ -311,13 +298,9 @@ at_most = "0.4 m/s"
 
 def test_a_claim_is_undecided_away_from_its_bound_where_other_steps_count_other_blows() -> None:
     """Nearest to the bound, at 314.7 rev/min, the claim holds; at 323.9 rev/min it is undecided."""
-    text = """
-revolutions = 4
-steps_per_revolution = 720
-[loom]
-machine = "WL680-3600"
-head = "G6300 left"
-weave = "10/01"
+    text = (
+        LOOM.replace("= 360", "= 720")
+        + """weave = "10/01"
 dampers = true
 warps = true
 play = true
@@ -327,17 +310,14 @@ free_travel = "14.15 mm"
 [play]
 restitution = 0.50
 play = "2.34 mm"
-[[claims]]
-kind = "below"
-signal = "play_1.hardest_blow"
-bound = 0.40747687907510827
 """
+        + claims({"kind": "below", "signal": "play_1.hardest_blow", "bound": 0.40747687907510827})
+    )
     found = limit(parse(text, "blows"), vary="shaft.speed=314.6743rpm..327.01457rpm", points=5)
     (part,) = found.ranges
     assert (part.low, part.high) == (found.span.low, pytest.approx(320.844435 * RPM))
-    assert "At 323.9295 rev/min 'highest value (play_1.hardest_blow)' is undecided: play_1.blows" in str(
-        found
-    )
+    said = "At 323.9295 rev/min 'highest value (play_1.hardest_blow)' is undecided: play_1.blows"
+    assert said in str(found)
 
 
 def test_a_claim_that_is_undecided_in_part_of_the_range_does_not_hold_everywhere() -> None:

@@ -16,22 +16,8 @@ DEMO = str(Path(__file__).parents[3] / "sims" / "wl680_3600.toml")
 DAMPER = str(Path(__file__).parents[3] / "sims" / "damper.toml")
 QUICK = ["--points", "5", "--set", "revolutions=2"]
 SPEED = ["limit", DEMO, "--vary", "shaft.speed", "--from", "300rpm", "--to", "900rpm", *QUICK]
-BOTH = [
-    "limit",
-    DEMO,
-    "--vary",
-    "shaft.speed=300rpm..900rpm",
-    "--vary",
-    "belt.guide_clearance=0.2mm..0.8mm",
-    "--rows",
-    "3",
-    *QUICK,
-]
-
-
-@pytest.fixture(autouse=True)
-def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+RANGES = ["--vary", "shaft.speed=300rpm..900rpm", "--vary", "belt.guide_clearance=0.2mm..0.8mm"]
+BOTH = ["limit", DEMO, *RANGES, "--rows", "3", *QUICK]
 
 
 def test_limits_are_printed(capsys: pytest.CaptureFixture[str]) -> None:
@@ -55,44 +41,28 @@ def test_limits_are_printed(capsys: pytest.CaptureFixture[str]) -> None:
     assert re.fullmatch(effort, lines[-1])
 
 
-def test_the_range_says_what_plain_numbers_are(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["limit", DEMO, "--vary", "shaft.speed=40..80", *QUICK]) == 0
-    heading = capsys.readouterr().out.splitlines()[0]
-    assert heading.endswith("from 381.9719 to 763.9437 rev/min (given; numbers without a unit are rad/s)")
-
-
-def test_an_end_that_is_not_given_is_not_called_given(capsys: pytest.CaptureFixture[str]) -> None:
-    for option, said in (
-        ("--from", "from 500 to 1200 rev/min (lower end given, upper end twice the scene's 600 rev/min)"),
-        ("--to", "from 300 to 500 rev/min (lower end half the scene's 600 rev/min, upper end given)"),
-    ):
-        main(["limit", DEMO, "--vary", "shaft.speed", option, "500rpm", *QUICK])
-        assert capsys.readouterr().out.splitlines()[0].endswith(said)
-
-
 @pytest.mark.parametrize(
-    ("options", "reason"),
+    ("options", "said"),
     [
-        (["--vary", "weft.speed=300rpm..900rpm"], "weft.speed has no effect: set weft.follow_shaft = false"),
+        ("=40..80", "from 381.9719 to 763.9437 rev/min (given; numbers without a unit are rad/s)"),
         (
-            ["--vary", "shaft.speed", "--rows", "4"],
-            "rows = 4 is how many values of a second variable are taken",
+            " --from 500rpm",
+            "from 500 to 1200 rev/min (lower end given, upper end twice the scene's 600 rev/min)",
         ),
+        (
+            " --to 500rpm",
+            "from 300 to 500 rev/min (lower end half the scene's 600 rev/min, upper end given)",
+        ),
+        # a value with a minus was taken for an option
+        (" --vary=shaft.start_angle --from -10deg --to -.5deg", "from -10 to -0.5 deg (given)"),
     ],
 )
-def test_what_would_have_no_effect_is_refused(
-    options: list[str], reason: str, capsys: pytest.CaptureFixture[str]
+def test_the_heading_says_where_the_range_comes_from(
+    options: str, said: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main(["limit", DEMO, *options]) == 2
-    message = capsys.readouterr().err
-    assert reason in message and message.count("\n") == 1
-
-
-def test_ranges_may_begin_below_zero(capsys: pytest.CaptureFixture[str]) -> None:
-    """A value with a minus was taken for an option."""
-    options = ["--vary", "shaft.start_angle", "--from", "-10deg", "--to", "-.5deg", *QUICK]
-    assert main(["limit", DEMO, *options]) in (0, 1)
-    assert "from -10 to -0.5 deg" in capsys.readouterr().out
+    vary = options if "--vary" in options else f" --vary shaft.speed{options}"
+    assert main(["limit", DEMO, *vary.split(), *QUICK]) in (0, 1)
+    assert capsys.readouterr().out.splitlines()[0].endswith(said)
 
 
 def test_the_help_states_the_defaults(capsys: pytest.CaptureFixture[str]) -> None:
@@ -120,19 +90,20 @@ def test_a_wide_terminal_has_a_table(
     assert "The scene's own value, 200 rev/min, is outside the range that was searched." in lines
 
 
-def test_a_scene_that_fails_at_its_own_value_says_so(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main([*SPEED, "--set", "shaft.speed=650rpm"]) == 0
-    out = capsys.readouterr().out
-    assert "At the scene's own value, 650 rev/min, 'the belt keeps a margin of 10 %' fails." in out
-
-
-def test_a_claim_on_its_bound_at_the_own_value_is_undecided(capsys: pytest.CaptureFixture[str]) -> None:
-    # within the 2e-6 by which 90 steps are off
-    assert main([*SPEED, "--set", "shaft.speed=646.8157rpm", "--set", "steps_per_revolution=90"]) == 0
-    out = capsys.readouterr().out
-    assert (
-        "At the scene's own value, 646.8157 rev/min, 'the belt keeps a margin of 10 %' is undecided." in out
-    )
+@pytest.mark.parametrize(
+    ("speed", "said"),
+    [
+        ("650", "650 rev/min, 'the belt keeps a margin of 10 %' fails."),
+        # within the 2e-6 by which 90 steps are off
+        ("646.8157", "646.8157 rev/min, 'the belt keeps a margin of 10 %' is undecided."),
+    ],
+)
+def test_what_does_not_hold_at_the_scenes_own_value_is_said(
+    speed: str, said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    steps = ["--set", "steps_per_revolution=90"]
+    assert main([*SPEED, "--set", f"shaft.speed={speed}rpm", *steps]) == 0
+    assert f"At the scene's own value, {said}" in capsys.readouterr().out
 
 
 def test_limits_are_written_as_a_table(capsys: pytest.CaptureFixture[str]) -> None:
@@ -199,6 +170,14 @@ def test_pictures_are_written_and_repeat(arguments: list[str]) -> None:
             "vary = ['a=1..2', 'b', 'c'] must be",
         ),
         (["limit", "none.toml", "--vary", "shaft.speed"], "none.toml: cannot be read"),
+        (
+            ["limit", DEMO, "--vary", "weft.speed=300rpm..900rpm"],
+            "weft.speed has no effect: set weft.follow_shaft = false",
+        ),
+        (
+            ["limit", DEMO, "--vary", "shaft.speed", "--rows", "4"],
+            "rows = 4 is how many values of a second variable are taken",
+        ),
     ],
 )
 def test_mistakes_are_refused_in_one_line(

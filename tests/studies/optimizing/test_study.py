@@ -3,18 +3,14 @@
 from pathlib import Path
 
 import pytest
-from study_files import DEMO, FAST, QUICK, study
+from study_files import DEMO, FAST, GOAL, SPEED, searched, study
 
-from loomfmu import LoomfmuError, optimize
+from loomfmu import LoomfmuError
 from loomfmu.studies.optimizing.study import load
 
-SPEED = '[ranges]\n"shaft.speed" = ["400 rpm", "900 rpm"]\n'
-GOAL = 'maximise = "shaft.speed"\n'
 
-
-def test_what_varies_and_what_is_wanted(tmp_path: Path) -> None:
+def test_what_varies_and_what_is_wanted() -> None:
     path = study(
-        tmp_path,
         'maximise = ["shaft.speed", "the belt keeps a margin of 10 %"]\nminimise = "damper_1.peak_load"\n'
         f"safety = '2 %'\n{SPEED}[choices]\n"
         '"dobby.law" = ["sloped_line", "sloped_sine"]\nhead = ["G6300 left", "GS900 left"]\n',
@@ -85,23 +81,17 @@ def test_what_varies_and_what_is_wanted(tmp_path: Path) -> None:
         (f"{GOAL}{SPEED}[search]\nevaluations = 3", "search.evaluations is unknown"),
     ],
 )  # fmt: skip
-def test_what_is_refused(text: str, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    path = study(tmp_path, text)
+def test_what_is_refused(text: str, said: str) -> None:
     with pytest.raises(LoomfmuError) as caught:
-        optimize(path, processes=1)
-    assert said in str(caught.value) and str(caught.value).startswith(f"{path}: ")
-    assert not (tmp_path / "results").exists()
+        searched(text, head=FAST)
+    assert said in str(caught.value) and str(caught.value).startswith("study.toml: ")
+    assert not Path("results").exists()
 
 
-def test_a_share_of_a_bound_of_0_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    path = study(
-        tmp_path, f"{GOAL}safety = 0.1\n[ranges]\n'shaft.speed' = ['150 rpm', '250 rpm']",
-        scene=DEMO.with_name("damper.toml"),
-    )  # fmt: skip
+def test_a_share_of_a_bound_of_0_is_refused() -> None:
+    text = f"{GOAL}safety = 0.1\n[ranges]\n'shaft.speed' = ['150 rpm', '250 rpm']"
     with pytest.raises(LoomfmuError, match=r"safety = 0\.1 is a share of the bound, and that of .* is 0"):
-        optimize(path, processes=1)
+        searched(text, DEMO.with_name("damper.toml"), FAST)
 
 
 @pytest.mark.parametrize(
@@ -121,20 +111,15 @@ def test_a_share_of_a_bound_of_0_is_refused(tmp_path: Path, monkeypatch: pytest.
         ("[choices]\n'dobby.law' = ['uniform']", "choices.dobby.law has one value; fix it in [set]"),
     ],
 )  # fmt: skip
-def test_what_changes_nothing_or_cannot_be_run_is_refused(
-    text: str, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    path = study(tmp_path, f"{GOAL}{SPEED}{text}", head=FAST + QUICK)
+def test_what_changes_nothing_or_cannot_be_run_is_refused(text: str, said: str) -> None:
     with pytest.raises(LoomfmuError) as caught:
-        optimize(path, processes=1)
-    assert said in str(caught.value) and str(caught.value).startswith(f"{path}: ")
+        searched(f"{GOAL}{SPEED}{text}")
+    assert said in str(caught.value) and str(caught.value).startswith("study.toml: ")
 
 
-def test_the_scene_is_named_as_the_study_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_scene_is_named_as_the_study_is() -> None:
     """Relative to the current folder, as in the rest of the line."""
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "studies").mkdir()
-    path = study(Path("studies"), GOAL + SPEED, Path("../none.toml"))
+    Path("studies").mkdir()
+    path = study(GOAL + SPEED, Path("../none.toml")).rename("studies/study.toml")
     with pytest.raises(LoomfmuError, match=r"^studies/study\.toml: none\.toml: cannot be read"):
         load(path)

@@ -36,6 +36,10 @@ def test_the_worst_case_is_that_of_the_closed_form() -> None:
     assert [each.key for each in margin.costs] == ["belt.guide_clearance", "shaft.speed"]
     given_back = [closed(0.3e-3, 620.0) - worst, closed(0.5e-3, 600.0) - worst]
     assert [each.distance for each in margin.costs] == pytest.approx(given_back, abs=1e-5)
+    # where each of two tolerances alone makes it as bad, none has a cost: all of them are named
+    *_rest, where, costs = worst_cases.rows(replace(found, claims=(replace(margin, costs=()),)))[0]
+    assert where == "belt.guide_clearance = 0.5 mm, shaft.speed = 620 rev/min"
+    assert costs == "cost: none alone; it is as bad without any one of them"
     (dwell,) = (each for each in found.claims if each.claim == "the frames dwell long enough")
     assert dwell.costs == () and dwell.worst.worst == dwell.own.worst
 
@@ -69,16 +73,6 @@ def test_studies_say_what_a_longer_run_would_change(capsys: pytest.CaptureFixtur
     assert (
         "is not settled: about 5597 N in a run of 4 revolutions; its limits are of the shorter one" in found
     )
-
-
-def test_a_worst_case_that_no_one_tolerance_lifts_names_all_of_them() -> None:
-    """It was called worst at the scene's own values where each of two tolerances alone makes it as bad."""
-    vary = ["belt.guide_clearance=0.2mm..0.5mm", "shaft.speed=580rpm..620rpm"]
-    found = tolerances(DEMO, vary=vary, set=FAST)
-    (margin,) = (each for each in found.claims if each.claim == MARGIN)
-    *_rest, where, costs = worst_cases.rows(replace(found, claims=(replace(margin, costs=()),)))[0]
-    assert where == "belt.guide_clearance = 0.5 mm, shaft.speed = 620 rev/min"
-    assert costs == "cost: none alone; it is as bad without any one of them"
 
 
 def test_a_worst_case_inside_the_box_is_found() -> None:
@@ -131,12 +125,16 @@ def test_what_cannot_be_searched_is_refused(vary: list[str], said: str) -> None:
         ('"belt.travel" = [0, 1]', "belt.travel cannot be set, it is wired to weft.travel"),
         ('"bolt.guide_clearance" = [0, 1]', "the scene has no instance 'bolt'; did you mean 'belt'?"),
         ('"revolutions" = [1, 2]', "revolutions cannot have a tolerance"),
+        ('"belt.guide_clearance" = "0.2 mm"', r'such as .*\["0.2 mm", "0.5 mm"\]'),
+        ("tolerances = 3", r'such as .*\["0.2 mm", "0.5 mm"\]'),
     ],
 )
 def test_a_scene_is_read_with_tolerances_that_can_be_set(table: str, said: str, tmp_path: Path) -> None:
     scene = tmp_path / "loom.toml"
-    scene.write_text(f"{DEMO.read_text()}\n[tolerances]\n{table}\n")
-    with pytest.raises(LoomfmuError, match=f"loom.toml: tolerances: .*{said}"):
+    text = DEMO.read_text()
+    whole = f"{table}\n{text}" if table.startswith("tolerances") else f"{text}\n[tolerances]\n{table}\n"
+    scene.write_text(whole)
+    with pytest.raises(LoomfmuError, match=f"loom.toml: tolerances.*{said}"):
         prepare(scene)
 
 
@@ -146,15 +144,6 @@ def test_warnings_of_the_scene_are_those_of_a_run(capsys: pytest.CaptureFixture[
     assert (
         capsys.readouterr().err.strip() == "warning: weft.speed has no effect: set weft.follow_shaft = false"
     )
-
-
-@pytest.mark.parametrize("table", ["tolerances = 3", '[tolerances]\n"belt.guide_clearance" = "0.2 mm"'])
-def test_a_table_that_is_none_is_refused(table: str, tmp_path: Path) -> None:
-    scene = tmp_path / "loom.toml"
-    text = DEMO.read_text()
-    scene.write_text(f"{text}\n{table}\n" if table.startswith("[") else f"{table}\n{text}")
-    with pytest.raises(LoomfmuError, match=r'such as .*\["0.2 mm", "0.5 mm"\]'):
-        prepare(scene)
 
 
 def test_the_scene_may_be_its_own_worst_case() -> None:

@@ -116,14 +116,16 @@ def show_boundary(found: Boundary) -> None:
     say(f"{found.title}: {first.key} from {first.text} ({first.source}),")
     say(f"at {len(found.values)} values of {second.key} from {second.text} ({second.source})")
     lines, headings = boundary_rows(found), boundary_headings(found)
-    printed.show(headings, lines, [(f"{place} {second.unit}:", f"{held};", by) for place, held, by in lines])
+    printed.show(
+        headings, lines, [(f"{place} {second.unit}:", f"{ends};", binding) for place, ends, binding in lines]
+    )
     if not any(each.depends for each in found.rows):
         say(
             f"No claim depends on {first.key} between {first.number(first.low)} and {first.show(first.high)}."
         )
     for place, row in zip(found.values, found.rows, strict=True):
-        if told := next(unsettled(row), ""):
-            say(f"With {second.key} = {second.show(place)}: {told[0].lower()}{told[1:]}")
+        if sentence := next(unsettled(row), ""):
+            say(f"With {second.key} = {second.show(place)}: {sentence[0].lower()}{sentence[1:]}")
             break  # the others are alike
     say(_effort(sum(each.runs for each in found.rows), found.rows))
 

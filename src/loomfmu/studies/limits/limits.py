@@ -18,7 +18,7 @@ from .results import ClaimLimits, Limit, Limits, Stretch
 from .search import Function, holds, near_zero, root, touching
 
 POINTS = 41  # of the scan
-BESIDE = 1e-4  # of a bracket: so near to a limit, the slope of a distance is that at the limit
+CLOSE = 1e-4  # of a bracket: so near to a limit, the slope of a distance is that at the limit
 MOST_POINTS = 100_001
 ROUNDING = 1e-12  # of bound or value: a distance as small is 0
 SAME = 1e-9  # of bound or value: a claim whose distance changes less does not depend on the variable
@@ -175,8 +175,8 @@ def _limit(number: int, runs: _Runs, low: float, high: float) -> Limit:
     if found.jumps:
         return Limit(*found[:3], begins, jumps=True)
     verdict = runs.estimated(found.value)[number]
-    beside = found.value + BESIDE * (max(low, high, key=lambda end: abs(end - found.value)) - found.value)
-    steepness = abs((distance(beside) - distance(found.value)) / (beside - found.value))
+    close = found.value + CLOSE * (max(low, high, key=lambda end: abs(end - found.value)) - found.value)
+    steepness = abs((distance(close) - distance(found.value)) / (close - found.value))
     known = math.isfinite(verdict.error) and steepness > 0.0
     error = verdict.error / steepness if known else math.inf
     doubt = "" if known else verdict.note

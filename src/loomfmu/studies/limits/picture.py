@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
+from ...sweeps.varied import labelled
 from ...traces.plotting import COLOURS, DASHES, figure, fixed_style
-from ..span import Span
 from .results import Boundary, ClaimLimits, Limits
 
 SIZE = (8.0, 4.6)  # [in]
@@ -27,10 +27,6 @@ def draw(found: Limits | Boundary) -> Any:
     return drawn
 
 
-def _label(span: Span) -> str:
-    return span.key + (f" [{span.unit}]" if span.unit != "1" else "")
-
-
 def _distances(axes: Any, found: Limits) -> None:
     span = found.span
     for stretch in found.ranges:
@@ -50,7 +46,7 @@ def _distances(axes: Any, found: Limits) -> None:
     axes.set_ylim(max(lowest - margin, -FARTHEST), min(highest + margin, FARTHEST))
     axes.set_xlim(span.low / span.factor, span.high / span.factor)
     axes.axvline(span.value / span.factor, color="grey", linewidth=1, linestyle=":")
-    axes.set_xlabel(_label(span))
+    axes.set_xlabel(labelled(span.key, span.unit))
     axes.set_ylabel("distance to the bound, as a share of it")
     axes.grid(color="#e8e8e8")
 
@@ -92,6 +88,6 @@ def _boundary(axes: Any, found: Boundary) -> None:
     axes.plot([], [], color="#8fc7a3", linewidth=5, label="all claims hold")
     axes.set_xlim(second.low / second.factor, second.high / second.factor)
     axes.set_ylim(first.low / first.factor, first.high / first.factor)
-    axes.set_xlabel(_label(second))
-    axes.set_ylabel(_label(first))
+    axes.set_xlabel(labelled(second.key, second.unit))
+    axes.set_ylabel(labelled(first.key, first.unit))
     axes.grid(color="#e8e8e8")

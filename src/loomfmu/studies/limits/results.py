@@ -217,8 +217,9 @@ def unsettled(found: Limits) -> Iterator[str]:
             *((limit.value, limit.unsettled) for limit in each.limits),
             (found.span.value, each.verdict.unsettled),
         ]
-        if told := next(((found.span.show(value), why) for value, why in known if why), None):
-            yield f"At {told[0]} '{each.claim}' is {told[1]}; its limits are of the shorter one."
+        if first := next(((value, why) for value, why in known if why), None):
+            value, why = first
+            yield f"At {found.span.show(value)} '{each.claim}' is {why}; its limits are of the shorter one."
 
 
 def _sentence(stretch: Stretch, found: Limits) -> str:

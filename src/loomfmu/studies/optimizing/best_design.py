@@ -2,7 +2,7 @@
 
 from ...display import printed
 from ...display.printed import say
-from .optimum import CLAIMS, HEADINGS, Optimum, claim_rows, conclusion, front_table, value_rows
+from .optimum import Optimum, best_tables, conclusion, front_table
 
 
 def show(found: Optimum) -> None:
@@ -14,26 +14,18 @@ def show(found: Optimum) -> None:
     say(f"{study.title}: {found.runs} designs{again}, {met}")
     if found.front and len(study.goals) == 1:
         (best,) = found.front
-        rows = value_rows(found, best)
-        printed.show(
-            HEADINGS, rows, [(f"{name}: {value}", _bracketed(text, note)) for name, value, text, note in rows]
-        )
-        rows = claim_rows(found, best)
-        printed.show(
-            CLAIMS,
-            rows,
-            [
-                (f"{word}  {claim}", f"{worst}, bound {bound}", _bracketed(distance, note))
-                for word, claim, worst, bound, distance, note in rows
-            ],
-            further=True,
-        )
+        (headings, values), (verdicts, claims) = best_tables(found, best)
+        entries = [(f"{name}: {value}", _bracketed(text, note)) for name, value, text, note in values]
+        printed.show(headings, values, entries)
+        by_claim = [
+            (f"{word}  {claim}", f"{worst}, bound {bound}", _bracketed(distance, note))
+            for word, claim, worst, bound, distance, note in claims
+        ]
+        printed.show(verdicts, claims, by_claim, further=True)
     elif found.front:
         headings, rows = front_table(found)
-        entries = [
-            tuple(f"{head}: {cell};" for head, cell in zip(headings, row, strict=True)) for row in rows
-        ]
-        printed.show(headings, rows, entries)
+        designs = [[f"{head}: {cell};" for head, cell in zip(headings, row, strict=True)] for row in rows]
+        printed.show(headings, rows, designs)
     say(*conclusion(found))
     if found.study.enumerable:
         say(f"All {found.study.combinations} combinations were run.")

@@ -1,5 +1,6 @@
-"""Binding limits of a design: claims as near to their bounds as they may be, and ends of ranges; and the gain
-if they were relaxed.
+"""The surroundings of a best design: what limits it, the gain without that, ranges in which it is as good.
+
+Claims that are as near to their bounds as they may be limit it, and ends of ranges.
 """
 
 from collections.abc import Sequence
@@ -11,12 +12,16 @@ import numpy as np
 
 from .polished import Tangent, tangent
 from .runs import Design, Floats, Runs, about
+from .search import ALIKE
 
 NEAR = 1e-6  # of a claim's scale or of a range: what is as near to its end may bind
 STEP = 1e-3  # of the ranges, within which a better design is looked for
 FAR = 1e9  # of a claim's scale: room that no step takes
 PRICE = 1e-9  # of the goal: what is gained by less room does not bind
 RELAXED = 0.01  # of a bound, or of a range
+PLACES = 17  # of a range that are tried at first; the ends of what is as good are then halved
+HALVINGS = 12
+NARROW = 0.01  # of a range: as little says nothing
 STILL, NOISE = 0.1, 1e-6  # of a gain, and of the goal: what tangents may promise without it; more is a kink
 
 
@@ -109,3 +114,41 @@ def _solved(here: Tangent, room: Floats, low: Floats, high: Floats) -> Any:
     bounds = [*zip(low.tolist(), high.tolist(), strict=True), (None, None)]
     found = linprog(costs, A_ub=matrix, b_ub=limits, bounds=bounds, method="highs")
     return found if found.status == 0 else None
+
+
+def indifferent(runs: Runs, best: Design) -> dict[str, tuple[float, float]]:
+    """Of each variable with a range, the part about its best value in which the design is as good.
+
+    All else stays. Those of less than 1 % of the range are left out, and those of goals.
+    """
+    found = {}
+    goals = {goal.place for goal in runs.study.goals if goal.kind == "variable"}
+    for place in (each for each in runs.study.continuous if each not in goals):
+        low, high = (_reached(runs, best, place, end) for end in (0.0, 1.0))
+        if high - low >= NARROW:
+            variable = runs.study.variables[place]
+            found[variable.key] = float(variable.value(low)), float(variable.value(high))
+    return found
+
+
+def _reached(runs: Runs, best: Design, place: int, end: float) -> float:
+    """Return how far towards an end of its range a variable may go."""
+    shares = np.linspace(best.point[place], end, PLACES).tolist()[1:]
+    good = bad = best.point[place]
+    for share, fine in zip(shares, _as_good(runs, best, place, shares), strict=True):
+        bad = share
+        if not fine:
+            break
+        good = share
+    for _halving in range(HALVINGS if bad != good else 0):
+        middle = 0.5 * (good + bad)
+        good, bad = (middle, bad) if _as_good(runs, best, place, [middle])[0] else (good, middle)
+    return float(good)
+
+
+def _as_good(runs: Runs, best: Design, place: int, shares: list[float]) -> list[bool]:
+    points = [(*best.point[:place], share, *best.point[place + 1 :]) for share in shares]
+    near = ALIKE * np.abs(best.heights)
+    return [
+        each.allowed and bool(np.all(np.abs(each.heights - best.heights) <= near)) for each in runs.at(points)
+    ]

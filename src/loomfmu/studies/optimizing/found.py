@@ -19,47 +19,33 @@ from ...display.printed import as_csv
 from ...errors import LoomfmuError, listed
 from ...extras import install, installed
 from ...files import ANY, write_file
-from ...sweeps.directory import files
+from ...sweeps.directory import PARTIAL, Contents
+from ...sweeps.varied import labelled
 from ...traces import Verdict
 from .. import rewritten
-from .binding import binding
-from .indifferent import indifferent
+from .binding import binding, indifferent
 from .optimum import Best, Optimum, front_table
 from .runs import Design, Point, Runs
 from .start import SAME
 from .study import Study
 
 
-class Files:
+class Files(Contents):
     """The files that a search writes into its directory."""
 
     def __init__(self, directory: Path):
-        self.directory = directory
         self.runs, self.designs = directory / "runs.jsonl", directory / "designs.csv"
         self.front, self.picture = directory / "front.csv", directory / "best.png"
+        super().__init__(
+            directory,
+            targets=(self.runs, self.designs, self.front, self.picture, directory / "best.toml"),
+            numbered=((directory, r"best_\d+\.toml"),),
+            unfinished=((directory, PARTIAL),),
+        )
 
     def scene(self, number: int = 0) -> Path:
         """The scene of a best design, counted from 1 in a front."""
         return self.directory / (f"best_{number:02d}.toml" if number else "best.toml")
-
-    @property
-    def targets(self) -> list[Path]:
-        """The files that are written under names of their own."""
-        return [self.runs, self.designs, self.front, self.picture, self.scene()]
-
-    @property
-    def folders(self) -> list[Path]:
-        """There are none."""
-        return []
-
-    def results(self) -> list[Path]:
-        """Return the files that exist under these names."""
-        fronts = [path for path in files(self.directory, "best_*.toml") if path.stem[5:].isdigit()]
-        return [path for path in self.targets if path.exists()] + fronts
-
-    def partial(self) -> list[Path]:
-        """Return the partial files that a killed search has left."""
-        return files(self.directory, ".*.partial")
 
     def check(self, study: Study, own: Point) -> None:
         """Refuse a scene that cannot be written here with other values, and best ones that somebody edited.
@@ -166,9 +152,8 @@ def _table(
     study: Study, designs: Sequence[Design], names: Sequence[str], own: Sequence[Verdict]
 ) -> list[list[str]]:
     """All designs, in the units that people read."""
-    columns = [_labelled(each.key, each.varied.unit, each.varied.display) for each in study.variables]
-    goals = [(goal.display, goal.unit) for goal in study.goals]
-    columns += [_labelled(goal.words, goal.unit, goal.display) for goal in study.goals]
+    columns = [labelled(each.key, each.varied.shown_unit) for each in study.variables]
+    columns += [labelled(goal.words, goal.shown_unit) for goal in study.goals]
     columns += [f"distance of {name} [{verdict.label}]" for name, verdict in zip(names, own, strict=True)]
     rows = [[*columns, "holds", "error"]]
     for each in designs:
@@ -179,8 +164,8 @@ def _table(
             for variable, value in zip(study.variables, each.values, strict=True)
         ]
         values += [
-            f"{goal.sign * height / units.unit(display).factor:.13g}"
-            for goal, height, (display, _unit) in zip(study.goals, each.heights, goals, strict=True)
+            f"{goal.sign * height / units.unit(goal.display).factor:.13g}"
+            for goal, height in zip(study.goals, each.heights, strict=True)
         ]
         values += [
             f"{verdict.displayed(distance):.13g}"
@@ -188,11 +173,6 @@ def _table(
         ]
         rows.append([*values, str(each.allowed).lower(), each.error])
     return rows
-
-
-def _labelled(name: str, unit: str, display: str) -> str:
-    shown = unit if display == "1" else display
-    return name if shown == "1" else f"{name} [{shown}]"
 
 
 def _write(path: Path, rows: Sequence[Sequence[str]]) -> None:

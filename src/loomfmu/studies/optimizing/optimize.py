@@ -19,8 +19,7 @@ from . import study as studies
 from .found import Files, found_of
 from .optimum import Optimum
 from .runs import Runs
-from .scattered import generation
-from .search import expected, searched
+from .search import expected, generation, searched
 from .start import limits_of, own_point
 
 
@@ -72,7 +71,7 @@ def optimize(
         limits = limits_of(study, verdicts, path)
         inputs = [path, *files_of(study.scene)]
         stack.enter_context(owned(files, "study", study.title, fingerprint, restart, inputs))
-        place = cluster(scheduler) if scheduler else local(study, processes, generation(study))
+        place = cluster(scheduler) if scheduler else local(study.scene, processes, generation(study))
         pool = stack.enter_context(place)
         advance = stack.enter_context(progress_bar(study.title, expected(study), wanted=progress))
         runs = stack.enter_context(closing(Runs(study, job, pool, files.runs, limits, advance)))

@@ -113,14 +113,12 @@ class Optimum:
         return f"<Optimum of {self.study.title}: {self}>"
 
     def _repr_html_(self) -> str:
-        tables = [notebook.table(*front_table(self))] if len(self.study.goals) > 1 else []
-        if len(self.study.goals) == 1 and self.front:
-            (best,) = self.front
-            tables = [
-                notebook.table(HEADINGS, value_rows(self, best)),
-                notebook.table(CLAIMS, claim_rows(self, best)),
-            ]
-        return notebook.block(self.study.title, *tables, *map(notebook.line, conclusion(self)))
+        if len(self.study.goals) > 1:
+            tables = [front_table(self)]
+        else:
+            tables = [table for best in self.front for table in best_tables(self, best)]
+        shown = (notebook.table(*table) for table in tables)
+        return notebook.block(self.study.title, *shown, *map(notebook.line, conclusion(self)))
 
 
 # ---- in words
@@ -140,15 +138,14 @@ def shown_error(goal: Goal, best: Best, place: int) -> str:
         return ""
     if not math.isfinite(error):
         return "error unknown"
-    return (
-        f"error {best.verdicts[goal.place].shown_error if goal.kind == 'claim' else _shown(goal, error, 1)}"
-    )
+    shown = best.verdicts[goal.place].shown_error if goal.kind == "claim" else _shown(goal, error, 1)
+    return f"error {shown}"
 
 
 def _shown(goal: Goal, value: float, digits: int = 7) -> str:
     """A value of a goal with its unit."""
-    shown, unit = value / units.unit(goal.display).factor, goal.unit if goal.display == "1" else goal.display
-    return f"{shown:.{digits}g}" + ("" if unit == "1" else f" {unit}")
+    unit = "" if goal.shown_unit == "1" else f" {goal.shown_unit}"
+    return f"{value / units.unit(goal.display).factor:.{digits}g}{unit}"
 
 
 def shown_gain(found: Optimum, best: Best, limit: Limit) -> str:
@@ -177,29 +174,27 @@ def _note(found: Optimum, best: Best, key: str | int) -> str:
     return ""
 
 
+Table = tuple[tuple[str, ...], list[tuple[str, ...]]]  # headings and rows
+
+
+def best_tables(found: Optimum, best: Best) -> tuple[Table, Table]:
+    """The goals and variables of a design, and its claims."""
+    return (HEADINGS, value_rows(found, best)), (CLAIMS, _claim_rows(found, best))
+
+
 def value_rows(found: Optimum, best: Best) -> list[tuple[str, ...]]:
     """A row for each goal and each variable, below `HEADINGS`."""
-    goals: list[tuple[str, ...]] = [
-        (
-            goal.words,
-            shown_goal(goal, best, place),
-            "",
-            "; ".join(filter(None, ("goal", shown_error(goal, best, place)))),
-        )
-        for place, goal in enumerate(found.study.goals)
-    ]
-    return goals + [
-        (
-            each.key,
-            each.varied.show(best.values[each.key]),
-            each.text,
-            _note(found, best, each.key),
-        )
-        for each in found.study.variables
-    ]
+    rows: list[tuple[str, ...]] = []
+    for place, goal in enumerate(found.study.goals):
+        note = "; ".join(filter(None, ("goal", shown_error(goal, best, place))))
+        rows.append((goal.words, shown_goal(goal, best, place), "", note))
+    for each in found.study.variables:
+        value = each.varied.show(best.values[each.key])
+        rows.append((each.key, value, each.text, _note(found, best, each.key)))
+    return rows
 
 
-def claim_rows(found: Optimum, best: Best) -> list[tuple[str, ...]]:
+def _claim_rows(found: Optimum, best: Best) -> list[tuple[str, ...]]:
     """A row for each claim, below `CLAIMS`."""
     return [
         (
@@ -214,16 +209,12 @@ def claim_rows(found: Optimum, best: Best) -> list[tuple[str, ...]]:
     ]
 
 
-def front_table(found: Optimum) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
-    """Headings and a row for each design of a front."""
+def front_table(found: Optimum) -> Table:
+    """The designs of a front."""
     study = found.study
     goals = [goal.name for goal in study.goals]
     others = [each for each in study.variables if each.key not in goals]
-    headings = (
-        *(goal.words for goal in study.goals),
-        *(each.key for each in others),
-        "binding",
-    )
+    headings = (*(goal.words for goal in study.goals), *(each.key for each in others), "binding")
     rows = [
         (
             *(shown_goal(goal, best, place) for place, goal in enumerate(study.goals)),

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from ... import units
+from ...sweeps.varied import labelled
 from ...traces.plotting import COLOURS, figure, fixed_style
 from .optimum import Optimum
 from .runs import Design, Floats
@@ -49,8 +50,7 @@ def draw(found: Optimum, designs: Sequence[Design]) -> Any:
             axes.plot(at, best[0], "*", color=COLOURS[1], markersize=14, label="best")
             if each.range and each.range.logarithmic:
                 axes.set_xscale("log")
-            unit = each.varied.unit if each.varied.display == "1" else each.varied.display
-            _labels(axes, each.key + (f" [{unit}]" if unit != "1" else ""), _named(study.goals[0]))
+            _labels(axes, labelled(each.key, each.varied.shown_unit), _named(study.goals[0]))
     if len(found.study.goals) == 1 and allowed.any():
         _focus(all_axes, columns[0][allowed])
     drawn.suptitle(study.title, fontsize=11)
@@ -98,9 +98,8 @@ def _column(goal: Goal, heights: Floats) -> Floats:
 
 
 def _named(goal: Goal) -> str:
-    unit = goal.unit if goal.display == "1" else goal.display
     name = f"distance of {goal.name}" if goal.kind == "claim" else goal.name
-    return name + (f" [{unit}]" if unit != "1" else "")
+    return labelled(name, goal.shown_unit)
 
 
 def _labels(axes: Any, x: str, y: str) -> None:

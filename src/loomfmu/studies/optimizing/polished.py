@@ -75,13 +75,13 @@ def tangent(function: Function, x: Floats) -> Tangent | None:
     """
     found = None
     for difference in DIFFERENCES:
-        here, *beside = function([x, *_beside(x, difference)])
+        here, *around = function([x, *_around(x, difference)])
         if here is None:
             return None
         values = np.concatenate([here.heights, here.room])
         ends = [
             (np.concatenate([*(side or here)]) - values, at - x if side else 0.0 * x)
-            for side, at in zip(beside, _beside(x, difference), strict=True)
+            for side, at in zip(around, _around(x, difference), strict=True)
         ]
         slopes, bend = np.zeros((len(values), len(x))), 0.0
         for place in range(len(x)):
@@ -97,7 +97,7 @@ def tangent(function: Function, x: Floats) -> Tangent | None:
     return found
 
 
-def _beside(x: Floats, difference: float) -> list[Floats]:
+def _around(x: Floats, difference: float) -> list[Floats]:
     """The points on both sides of a point along each variable, within 0 and 1."""
     steps = difference * np.repeat(np.eye(len(x)), 2, axis=0) * np.tile([-1.0, 1.0], len(x))[:, np.newaxis]
     return list(np.clip(x + steps, 0.0, 1.0))

@@ -3,15 +3,19 @@
 from collections.abc import Callable, Iterator, Sequence
 from itertools import product
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from .polished import polished
 from .runs import Design, Floats, Pieces, Point, Runs, about
-from .scattered import first_points, generation, scattered
 from .start import check_effects, check_options
 from .study import Study
 
+Height = Callable[[Design], float]  # what is to be made small
+EACH = 10  # designs of a generation for each variable
+FEWEST, MOST = 24, 100  # designs of a generation
+TIGHT = 1e-3  # spread of the goal in a generation at which the search ends
 POLISHED = 6  # combinations of options that are searched near their best design
 EXPECTED = 60  # runs of that for each variable, as a progress bar expects them
 BETWEEN = 4  # a design within a front has that part of the runs of one at its ends
@@ -163,3 +167,58 @@ def _front(designs: Sequence[Design]) -> list[Design]:
         if not np.any(better) and not np.any(no_worse[best]):
             best.append(number)
     return [ordered[number] for number in best]
+
+
+# ---- everywhere: differential evolution over all variables, options among them
+
+
+def first_points(study: Study, own: Point, count: int, seed: int) -> list[Point]:
+    """The scene's own design, and others spread evenly over ranges and options."""
+    from scipy.stats import qmc
+
+    spread = qmc.Halton(len(study.variables), rng=seed).random(count - 1).tolist()
+    places = [tuple(map(_number, study.variables, each)) for each in spread]
+    return [own, *places]
+
+
+def _number(variable: Any, share: float) -> float:
+    """The number of a variable at a share of all its numbers."""
+    return share if variable.range else float(min(int(share * (variable.last + 1.0)), int(variable.last)))
+
+
+def generation(study: Study) -> int:
+    """Return the number of designs in a generation."""
+    return min(max(EACH * len(study.variables), FEWEST), MOST)
+
+
+def scattered(runs: Runs, height: Height, start: Sequence[Point], budget: int, seed: int) -> None:
+    """Search from a first generation, as far as `budget` runs go; the designs are kept in `runs`.
+
+    A design that is not allowed ranks by how much it lacks, below all that are.
+    """
+    from scipy.optimize import NonlinearConstraint, differential_evolution
+
+    def designs(numbers: Floats) -> list[Design]:
+        return runs.at([tuple(each) for each in np.atleast_2d(numbers.T).tolist()])
+
+    def shortfall(numbers: Floats) -> Floats:
+        found = np.array([each.shortfall for each in designs(numbers)])
+        return found[np.newaxis] if numbers.ndim > 1 else found
+
+    def goal(numbers: Floats) -> Floats:
+        return np.array([height(each) if each.allowed else np.inf for each in designs(numbers)])
+
+    variables = runs.study.variables
+    differential_evolution(
+        goal,
+        [(0.0, each.last) for each in variables],
+        init=np.array(start),
+        rng=seed,
+        polish=False,
+        constraints=NonlinearConstraint(shortfall, -np.inf, 0.0),
+        vectorized=True,
+        updating="deferred",
+        integrality=[each.range is None for each in variables],
+        tol=TIGHT,
+        maxiter=max(1, budget // len(start) - 1),
+    )

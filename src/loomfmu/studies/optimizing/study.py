@@ -14,7 +14,7 @@ from ...cosim.scenes.settings import read_table
 from ...errors import LoomfmuError, listed, shown, suggestion
 from ...sweeps.axes import Range, flattened, grid_axis, range_of, whole
 from ...sweeps.header import HEAD, Header, check_by_scene, read, variables
-from ...sweeps.varied import Value, Varied
+from ...sweeps.varied import Value, Varied, shown_unit
 from .constraints import names_of, required_of, safety_of
 
 WAYS = {"minimise": 1.0, "maximise": -1.0}  # what a goal is multiplied by to be made small
@@ -72,6 +72,11 @@ class Goal:
     display: str = "1"
 
     @property
+    def shown_unit(self) -> str:
+        """The unit that people read it in."""
+        return shown_unit(self.unit, self.display)
+
+    @property
     def words(self) -> str:
         """The goal in words."""
         way = "smallest" if self.sign > 0.0 else "largest"
@@ -94,11 +99,6 @@ class Study(Header):
     shares: tuple[float, ...]
     amounts: tuple[str, ...]
     search: dict[str, int]
-
-    @property
-    def values(self) -> tuple[str, ...]:
-        """Signals whose final values are wanted: none."""
-        return ()
 
     @cached_property
     def continuous(self) -> list[int]:

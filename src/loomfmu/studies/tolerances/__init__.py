@@ -1,1 +1,1 @@
-"""Tolerances: the worst case of every claim within them; `report` and `command` show it."""
+"""Tolerances: the worst case of every claim within them; `worst_cases` shows it."""

@@ -268,7 +268,7 @@ def _descended(distance: Callable[[Shares], float], point: Shares) -> Shares:
         return point
     step = FIRST
     while step >= LAST:
-        better = min(_beside(point, step), key=distance, default=point)
+        better = min(_neighbours(point, step), key=distance, default=point)
         if distance(better) < distance(point):
             point = better
         else:
@@ -276,7 +276,7 @@ def _descended(distance: Callable[[Shares], float], point: Shares) -> Shares:
     return point
 
 
-def _beside(point: Shares, step: float) -> list[Shares]:
+def _neighbours(point: Shares, step: float) -> list[Shares]:
     found = []
     for place, share in enumerate(point):
         for moved in (max(share - step, 0.0), min(share + step, 1.0)):
