@@ -12,7 +12,7 @@ from children import Task, Timing, children, in_turn, middle, spread
 from own import ENGINES, Ours, Source, Stepped, demo
 from records import Notes, Table, say
 from scaling import WEFT
-from texts import Figures, Find, error, parts, shown, table, whole
+from texts import Find, error, parts, shown, table, whole
 
 import loomfmu
 
@@ -179,8 +179,3 @@ def section(find: Find) -> str:
         " monitor finds between samples), nor a search at each sample (the deflection of a buckled belt). It"
         f" leaves out:\n\n{whole(find('limits_left_out'))}",
     )
-
-
-def figures(find: Find) -> Figures:
-    """None: the table says it all."""
-    return {}

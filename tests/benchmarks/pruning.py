@@ -6,7 +6,7 @@ from typing import Any
 from children import Child, Inside, Task, children, in_turn, middle, spread
 from own import Judged, Ours, Source, demo
 from records import Notes, Table, say
-from texts import Figures, Find, parts, shown, table
+from texts import Find, parts, shown, table
 
 NAME = "pruning"
 STEPS = 1440  # in a revolution
@@ -72,8 +72,3 @@ def section(find: Find) -> str:
         " judging, and on the window grid the coarse runs that look for the windows.",
         table(heads, lines),
     )
-
-
-def figures(find: Find) -> Figures:
-    """None."""
-    return {}

@@ -14,7 +14,7 @@ import c_programs
 from own import DEMO, Source
 from records import Notes, Row, Table, installed, say
 from start_up import MAIN, PATIENCE
-from texts import Figures, Find, parts, shown, whole
+from texts import Find, parts, shown, whole
 
 import loomfmu
 from loomfmu.cosim.scenes import scene as scenes
@@ -172,8 +172,3 @@ def section(find: Find) -> str:
 def _whole(row: Row) -> float:
     """Seconds for all rows, the set-up included."""
     return float(row["set-up [s]"] + row["rows"] / row["rate [rows/s]"])
-
-
-def figures(find: Find) -> Figures:
-    """None."""
-    return {}
