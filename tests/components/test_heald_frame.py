@@ -126,20 +126,6 @@ def test_warp_is_symmetric_about_the_closed_shed():
     assert heights == pytest.approx([-0.098 / 12, 0.0, 0.098 / 12], abs=1e-15)
 
 
-def test_inputs_at_the_start_of_a_step_are_carried():
-    held = frame_of([0, 1])
-    carried = frame_of([0, 1], inputs_at_step_end=False)
-    ends = frame_of([0, 1], inputs_at_step_end=True)
-    carried.rotor_angle, carried.rotor_velocity, carried.rotor_acceleration = 1.0, 40.0, 600.0
-    carried.step(0.0, 1e-3)
-    ends.rotor_angle, ends.rotor_velocity, ends.rotor_acceleration = 1.0403, 40.6, 600.0
-    ends.step(0.0, 1e-3)
-    placed(held, 1.0403, 40.6, 600.0)
-    for name in ("lift", "velocity", "acceleration"):
-        assert getattr(ends, name) == getattr(held, name)
-        assert getattr(carried, name) == pytest.approx(getattr(held, name), rel=1e-14)  # rounding of 1.0403
-
-
 def test_default_pattern_is_plain_weave_half_a_move_on():
     frame = HealdFrame()
     frame.initialize(0.0)

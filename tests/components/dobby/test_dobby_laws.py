@@ -31,7 +31,6 @@ LAWS = (
 )
 NUMBER = {name: number for number, name in enumerate(LAWS, start=1)}
 ROTORS = [name for name in LAWS if name != "spline_cam"]
-FRAME = 6.0  # travel of the frame over the height of the warp
 RISE = radians(170.0)  # where the frames of the air-jet loom begin to rise
 
 LEVERS = [(0.1, 0.1, 0.04), (0.08, 0.15, 0.05), (0.3, 0.1, 0.09), (0.1, 0.2, 0.099)]
@@ -151,19 +150,6 @@ def test_law_table_without_a_table_is_rejected():
     drive = DobbyDrive(law=NUMBER["table"])
     problem = drive.problems[drive.initialize(0.0) - 1]
     assert problem.text.startswith("law = table has no table: ") and not problem.warning
-
-
-@pytest.mark.parametrize("law", ["spline_cam", "table"])
-def test_a_restored_state_goes_on_as_if_nothing_had_happened(law):
-    drive = dobby(law, speed=60.0)
-    for step in range(100):
-        drive.step(0.002 * step, 0.002)
-    copy = DobbyDrive()
-    assign(copy, values(drive))
-    for step in range(100, 200):
-        drive.step(0.002 * step, 0.002)
-        copy.step(0.002 * step, 0.002)
-        assert values(copy) == values(drive)
 
 
 # Peaks
@@ -304,15 +290,6 @@ def test_clear_shed_is_the_dwell_of_its_own_share(law):
 # The spline cam
 
 
-def test_published_figures_of_the_spline_cam():
-    drive = dobby("spline_cam")
-    travel = 1e3 * FRAME * drive.cam_span
-    assert travel == pytest.approx(98.17, abs=5e-3)  # two decimals
-    assert travel * drive.highest_speed == pytest.approx(24.76, abs=5e-3)
-    assert travel * drive.highest_acceleration == pytest.approx(16.99, abs=5e-3)
-    assert degrees(drive.clear_shed_angle) == pytest.approx(142.9, abs=0.05)  # above 15 mm of warp height
-
-
 def test_published_clearance_in_full():
     # 15 mm as a share of the stroke to all digits, against the spline's own crossings
     _place, height = cam_top()
@@ -418,18 +395,6 @@ def test_frames_under_the_cam_hold_and_go_the_other_way():
     assert rows[turn + 1000][1] == pytest.approx(0.098 * (1.0 - rows[turn + 1000][0]), abs=1e-16)
     assert {row[1] for row in rows[2402 : 2400 + turn - 1]} == {0.098}
     assert rows[-1][1] == pytest.approx(0.098 * rows[-1][0], abs=1e-16)
-
-
-def test_held_inputs_are_carried_over_the_step():
-    # share + rate h + second h^2 / 2: exact for these
-    frame = HealdFrame(
-        follow_lift=True, pattern_1=2, lift_fraction=0.25, lift_rate=4.0, lift_acceleration=-8.0
-    )
-    frame.rotor_angle, frame.rotor_velocity = 1.0, 10.0
-    frame.initialize(0.0)
-    assert frame.lift == 0.098 * 0.25
-    frame.step(0.0, 0.125)
-    assert (frame.lift, frame.velocity) == (0.098 * (0.25 + 0.5 - 0.0625), 0.098 * 3.0)
 
 
 # What is refused
