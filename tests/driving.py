@@ -6,9 +6,17 @@ import random
 from collections.abc import Iterator
 from typing import Any
 
+from loomfmu.components import DobbyDrive
 from loomfmu.declaring.variables import Component, Variable, variables_of
 
 declared = functools.cache(variables_of)  # a declaration does not change, and tests ask for it all the time
+# the number of each rotor law
+LAWS = {
+    name: number
+    for law in declared(DobbyDrive)
+    if law.name == "law"
+    for number, name in enumerate(law.choices, start=1)
+}
 
 
 def inputs(component: type[Component]) -> list[Variable]:

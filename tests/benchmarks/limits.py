@@ -155,8 +155,6 @@ _WHOLE = "One FMU of the whole loom is what `loomfmu export --fmu` writes, stepp
 def section(find: Find) -> str:
     """Each way beside the bare mathematics."""
     rows = find(NAME)
-    if not rows:
-        return "*Not run.*"
     least = next((row[STEP] for row in rows if row["what"] == LOOP), None)
     lines = []
     for row in rows:

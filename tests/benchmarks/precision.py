@@ -202,8 +202,6 @@ COLOURS = {
 def section(find: Find) -> str:
     """Work and precision in words and tables."""
     rows = find(NAME)
-    if not rows:
-        return "*Not run.*"
     references = {row["result"]: row for row in find("references")}
     exact = [[name, f"{row['value']:.6g}", shown(row["unit"])] for name, row in references.items()]
     errors_of = [column for column in COLUMNS if column.startswith("error of")]
@@ -257,8 +255,6 @@ def _reached(rows: list[Row]) -> str:
 def figures(find: Find) -> Figures:
     """Errors over time, one panel for each."""
     rows = find(NAME)
-    if not rows:
-        return {}
     heads = [column for column in COLUMNS if column.startswith("error of")]
 
     def draw(figure: Any) -> None:

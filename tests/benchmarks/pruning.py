@@ -57,8 +57,6 @@ def _run(asked: Child | Inside, steps: int) -> str:
 def section(find: Find) -> str:
     """What each way saves."""
     rows = find(NAME)
-    if not rows:
-        return "*Not run.*"
     most = next((row[TIME] for row in rows if row["what"] == WHOLE), None)
     heads = ["what", "how", "ms per revolution", "spread, %", "repeats", "of the whole", "what is run"]
     lines = []

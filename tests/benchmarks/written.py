@@ -94,13 +94,19 @@ def _tables(results: Path) -> Find:
 
 
 def _figures(module: Any, find: Find) -> Figures:
-    """The figures of a benchmark, most of which have none."""
-    found: Figures = module.figures(find) if hasattr(module, "figures") else {}
+    """The figures of a benchmark that was run; most have none."""
+    drawn = hasattr(module, "figures") and (module is summary or _was_run(module, find))
+    found: Figures = module.figures(find) if drawn else {}
     return found
 
 
+def _was_run(module: Any, find: Find) -> bool:
+    return bool(find(module.NAME) or find(f"{module.NAME}_steps"))
+
+
 def _section(title: str, module: Any, find: Find) -> str:
-    return parts(f"## {title}", module.section(find), *_pictures(module, find))
+    said = module.section(find) if _was_run(module, find) else "*Not run.*"
+    return parts(f"## {title}", said, *_pictures(module, find))
 
 
 def _pictures(module: ModuleType, find: Find) -> list[str]:

@@ -445,10 +445,18 @@ def test_inputs_at_the_start_of_a_step_are_carried_over_it(component, given):
 
 @pytest.mark.few(2, each="component")
 @every_flag
-@pytest.mark.parametrize("quickening", [0.0, QUICKENING])
-def test_rates_belong_to_their_outputs(component, given, quickening):
-    if quickening and component.keeps != NOTHING:
-        return  # a belt that is thrown out so fast folds
+def test_rates_belong_to_their_outputs(component, given):
+    check_rates(component, given, 0.0)
+
+
+@every_component
+def test_rates_belong_to_their_outputs_on_a_shaft_that_speeds_up(component):
+    given = {"follow_shaft": True, "inputs_at_step_end": True}
+    if component.keeps == NOTHING and given.keys() <= {v.name for v in declared(component)}:
+        check_rates(component, given, QUICKENING)
+
+
+def check_rates(component, given, quickening):
     rated = [v for v in declared(component) if v.causality == "output" and v.rate is not None]
     step_size = 1e-5
     instance = component(**given)
