@@ -34,16 +34,6 @@ def test_lowest_values_are_those_of_the_continuous_curve(name, begin):
     assert belt.lowest_margin == pytest.approx(1.0 - load, abs=1e-8 * load)
 
 
-@pytest.mark.parametrize(("steps", "error"), [(45, 5e-5), (90, 2e-6), (180, 2e-7), (360, 1e-8), (720, 1e-8)])
-def test_lowest_values_hardly_depend_on_the_step(steps, error):
-    # quintics between samples: the error of their second derivative falls with the fourth power of the
-    # step, to 1e-8 where rounding takes over
-    belt = Loom(steps=steps, prescribe_length_factor=True).turn(0.5)
-    safe = float(machine("WL680-3600").safe_speed(machine("WL680-3600").worst_angle(), 0.8))
-    assert belt.lowest_speed_limit == pytest.approx(safe, rel=error)
-    assert belt.lowest_margin == pytest.approx(1.0 - (600.0 * RPM / safe) ** 2, abs=2.0 * error)
-
-
 def test_outputs_at_a_sample_are_the_formulas():
     loom = Loom("WL680-3600", steps=720)
     belt = loom.turn(200 / 720)  # 100 degrees: in the window

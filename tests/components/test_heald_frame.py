@@ -47,19 +47,6 @@ def test_at_a_slow_point_the_frame_rests_where_its_peg_wants_it(pegs, pick):
     assert frame.moving is (then != wanted)
 
 
-def test_a_pattern_of_128_picks_runs_and_repeats():
-    rng = random.Random(5)
-    pegs = [rng.randint(0, 1) for _ in range(128)]
-    frame = frame_of(pegs, stroke=1.0)
-    seen = [round(placed(frame, 2 * pi * (pick + 1e-9)).lift) for pick in range(-128, 256)]
-    assert seen == pegs * 3
-
-
-def test_requested_wraps_on_both_sides():
-    frame = frame_of([1, 0, 0])
-    assert [frame.requested(pick) for pick in (-3, -2, -1, 0, 1, 2, 3)] == [1, 0, 0, 1, 0, 0, 1]
-
-
 @pytest.mark.parametrize("peg", [0, 1])
 def test_a_frame_that_holds_does_not_move(peg):
     frame = frame_of([peg], stroke=0.1)

@@ -88,20 +88,6 @@ def test_a_crank_phase_between_both_dead_centres_is_refused(phase):
     assert WeftInsertion(crank_phase=radians(phase)).initialize(0.0) == 5
 
 
-@every_machine
-def test_head_returns_the_way_it_came(name):
-    weft = weft_of(name, speed=1.0)
-
-    def motion(theta: float) -> tuple[float, float, float]:
-        placed(weft, theta)
-        return weft.travel, weft.velocity, weft.acceleration
-
-    for k in range(1, 36):
-        there, back = motion(k * pi / 36), motion(2 * pi - k * pi / 36)
-        # the angle is rounded to 4e-16, the motion's steepest derivative is below 10
-        assert back == pytest.approx((there[0], -there[1], there[2]), abs=2e-14)
-
-
 def test_defaults_are_a_published_machine():
     default = WeftInsertion()
     for name, value in parameters("WeftInsertion", machine="WL680-3600").items():

@@ -55,22 +55,6 @@ def test_propagation_is_the_matrix_exponential(z, w, elastic, viscous, shares, d
     assert abs(found[1] - exact[1]) * duration <= 2e-15 * scale + 1e-300
 
 
-@given(unit, unit, st.floats(0.1, 0.9))
-def test_two_pieces_make_one_whole(z, v, first_part):
-    k, c, drive = 0.8, 0.3, (0.3, -0.5, 0.7, -0.2)
-    first = propagate(Swing(z, v, k, c, *drive), first_part)
-    # the drive from there on, expanded about the later time
-    u0, u1, u2, u3 = drive
-    later = (
-        u0 + first_part * (u1 + first_part * (u2 + first_part * u3)),
-        u1 + first_part * (2 * u2 + first_part * 3 * u3),
-        u2 + 3 * first_part * u3,
-        u3,
-    )
-    both = propagate(Swing(*first, k, c, *later), 1.0 - first_part)
-    assert both == pytest.approx(propagate(Swing(z, v, k, c, *drive), 1.0), abs=5e-15)  # a few roundings
-
-
 def test_no_duration_changes_nothing():
     assert propagate(Swing(0.3, -0.2, 1e9, 1e9, 1.0, 1.0, 1.0, 1.0), 0.0) == (0.3, -0.2)
 

@@ -169,15 +169,6 @@ def test_constant_rate(relaxation, creep, step, steps):
         assert constant_rate_force(t, v, b, creep, relaxation) == pytest.approx(float(exact), rel=1e-14)
 
 
-@pytest.mark.parametrize("steps", [1, 7, 1000])
-def test_relaxation_after_a_stop(steps):
-    # held at an extension x the thread keeps the share n/r of its elastic tension
-    b, n, r, x, t = 67.0, 5.0, 10.0, 0.007, 0.4
-    force = run(lambda _t: x, lambda _t: 0.0, lambda _t: 0.0, t / steps, steps, b, n, r, b * x)
-    exact = b * x * (n / r + (1 - n / r) * MP.exp(-MP.mpf(r) * t))
-    assert abs(force - exact) < 1e-16 * steps  # a rounding of 0.5 N in each step
-
-
 @pytest.mark.parametrize(
     ("n", "r"), [(5.0, 10.0), (0.0, 10.0), (5.0, 0.0), (0.0, 0.0), (5.0, 5.0), (5.0, 1e5)]
 )
@@ -207,48 +198,6 @@ def test_sinusoidal_drive(n, r):
         h = t / steps
         bound = b * size * ((w * h) ** 6 / 46080 + (w * h) ** 5 * w / max(w, r) / 3000)
         assert error < bound + 1e-14, steps
-
-
-@given(unit, st.floats(0.0, 100.0), drives, st.floats(0.01, 0.99))
-def test_splitting_a_step_changes_nothing(force, decay, drive, share):
-    whole, area = thread_force(force, decay, drive, 1.0)
-    first, first_area = thread_force(force, decay, drive, share)
-    # the drive from there on, as a polynomial of the share of what is left
-    rest = 1.0 - share
-    p = [MP.mpf(each) for each in drive]
-    later = [
-        float(rest ** (k + 1) * sum(MP.binomial(j, k) * p[j] * MP.mpf(share) ** (j - k) for j in range(k, 6)))
-        for k in range(6)
-    ]
-    second, second_area = thread_force(first, decay * rest, later, 1.0)
-    # 32 is the largest sum of the binomials by which terms of both signs grow
-    assert second == pytest.approx(whole, abs=32 * 4e-15 * (abs(force) + sum(map(abs, drive))))
-    assert first_area + rest * second_area == pytest.approx(
-        area, abs=32 * 4e-15 * (abs(force) + sum(map(abs, drive)))
-    )
-
-
-def test_equal_rates_make_a_spring():
-    # n = r: F' + r F = b (x' + r x) is solved by F = b x, whatever the motion
-    b, r = 67.0, 10.0
-    force = run(
-        lambda t: 0.007 * sin(9 * t),
-        lambda t: 0.063 * cos(9 * t),
-        lambda t: -0.567 * sin(9 * t),
-        0.01,
-        37,
-        b,
-        r,
-        r,
-    )
-    assert force == pytest.approx(b * 0.007 * sin(9 * 0.37), abs=1e-15)  # rounding of 0.5 N
-
-
-def test_forgetting_at_once_leaves_a_dashpot():
-    # r to infinity: F = b x' / r + b n x / r; the rest is smaller by another r
-    b, n, r, v, t = 67.0, 5.0, 1e6, 0.02, 1.0
-    force = run(lambda t: v * t, lambda t: v, lambda t: 0.0, 0.1, 10, b, n, r)
-    assert force == pytest.approx(b * v * (1.0 + n * t) / r, rel=2.0 * n / r)
 
 
 # Turns and levels

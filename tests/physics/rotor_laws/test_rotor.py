@@ -74,15 +74,6 @@ def test_rotor_never_turns_back(law, one, other, reduction):
     assert rotor_law(law, low, reduction)[0] <= rotor_law(law, high, reduction)[0] + 1e-14
 
 
-@given(law_of_choice, st.floats(0.02, 2.0 * pi - 0.02), reduction_of_choice)
-def test_velocity_and_acceleration_belong_to_the_angle(law, x, reduction):
-    h = 1e-3
-    (before, v0, _), (_, v, a), (after, v1, _) = (rotor_law(law, x + d, reduction) for d in (-h, 0.0, h))
-    # central differences: h^2/6 times S''' (at most 16 z eta, 10) and, across a knot, h/4 times its jump
-    assert (after - before) / (2 * h) == pytest.approx(v, abs=1e-5)
-    assert (v1 - v0) / (2 * h) == pytest.approx(a, abs=1e-2)
-
-
 @pytest.mark.parametrize("function", [harmonic_ends, sloped_line, sloped_sine])
 @pytest.mark.parametrize("reduction", REDUCTIONS)
 def test_pieces_join_with_angle_velocity_and_acceleration(function, reduction):

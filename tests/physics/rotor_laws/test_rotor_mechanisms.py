@@ -5,7 +5,7 @@ from math import pi
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import given
 from hypothesis import strategies as st
 from reference import MP
 
@@ -150,22 +150,6 @@ def test_no_minimum_of_the_gears_speed_is_missed(a1, a2, a3, a4):
     # roots good to 1e-7 at worst, two that fall together, where the speed is flat; and rounding
     assert lowest == pytest.approx(speeds.min(), abs=1e-13)
     assert highest == pytest.approx(speeds.max(), abs=1e-13)
-
-
-@given(harmonic, harmonic, harmonic, harmonic, any_angle)
-def test_gears_speed_stays_between_its_extremes(a1, a2, a3, a4, x):
-    lowest, highest = gear_speed_extremes(a1, a2, a3, a4)
-    speed = noncircular_gears(x, a1, a2, a3, a4)[1]
-    assert lowest - 1e-14 <= speed <= highest + 1e-14  # rounding of five terms
-
-
-@given(harmonic, harmonic, harmonic, harmonic, any_angle, any_angle)
-def test_gears_that_keep_above_standstill_never_turn_back(a1, a2, a3, a4, one, other):
-    lowest, _highest = gear_speed_extremes(a1, a2, a3, a4)
-    assume(lowest > 0.0)
-    low, high = min(one, other), max(one, other)
-    reached = [noncircular_gears(x, a1, a2, a3, a4)[0] for x in (low, high)]
-    assert reached[1] - reached[0] >= lowest * (high - low) - 1e-14  # rounding of angles up to 10
 
 
 # Peaks of the modulator's laws
