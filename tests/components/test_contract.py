@@ -446,25 +446,25 @@ def test_inputs_at_the_start_of_a_step_are_carried_over_it(component, given):
 @pytest.mark.few(2, each="component")
 @every_flag
 def test_rates_belong_to_their_outputs(component, given):
-    check_rates(component, given, 0.0)
+    check_rates(component, given, 0.02, 0.0)  # away from the points of symmetry
 
 
 @every_component
 def test_rates_belong_to_their_outputs_on_a_shaft_that_speeds_up(component):
     given = {"follow_shaft": True, "inputs_at_step_end": True}
     if component.keeps == NOTHING and given.keys() <= {v.name for v in declared(component)}:
-        check_rates(component, given, QUICKENING)
+        check_rates(component, given, 0.06, QUICKENING)  # while the pawl of a lock turns
 
 
-def check_rates(component, given, quickening):
+def check_rates(component, given, begin, quickening):
     rated = [v for v in declared(component) if v.causality == "output" and v.rate is not None]
     step_size = 1e-5
     instance = component(**given)
     instance.initialize(0.0)
-    advance(instance, 0.0, 0.02, quickening)  # away from the points of symmetry
+    advance(instance, 0.0, begin, quickening)
     rows = []
-    for n in range(2000, 2200):
-        advance(instance, n * step_size, step_size, quickening)
+    for n in range(200):
+        advance(instance, begin + n * step_size, step_size, quickening)
         rows.append(values(instance, "output"))
     for variable in rated:
         largest = max(abs(row[variable.rate]) for row in rows)

@@ -4,7 +4,7 @@ from functools import cache
 from math import degrees, hypot, pi, radians
 
 import pytest
-from reference import MP, RPM, Jet, acos, atan2, cos, sin, sqrt
+from reference import MP, RPM, Jet, six_bar
 
 from loomfmu.components.reed_beat_up import ReedBeatUp
 from loomfmu.design.reed import crank_place, crank_rocker_without_quick_return, reed_dyad
@@ -47,18 +47,7 @@ class Reference:
 
     def reed(self, crank: float) -> tuple[Jet, Jet, Jet]:
         """Reed coordinate, angle of the rocker and slope of the rod at a crank angle, by that angle."""
-        of = self.of
-        turned = Jet(crank, 1)
-        x = MP.mpf(of.crank_length) * cos(turned) + of.crank_x
-        y = MP.mpf(of.crank_length) * sin(turned) + of.crank_y
-        square = x * x + y * y
-        coupler, rocker = MP.mpf(of.coupler_length), MP.mpf(of.rocker_length)
-        apex = acos((square + (rocker**2 - coupler**2)) / (2 * rocker * sqrt(square)))
-        chi = atan2(y, x) + of.assembly * apex
-        arm = MP.mpf(of.arm_length)
-        drop = Jet(of.reed_height) - arm * sin(chi + of.arm_angle)
-        reach = sqrt(Jet(MP.mpf(of.rod_length) ** 2) - drop * drop)
-        return arm * cos(chi + of.arm_angle) + reach, chi, atan2(drop, reach)
+        return six_bar(self.of, Jet(crank, 1))
 
     def crank(self, theta: float) -> float:
         return self.front + self.of.crank_direction * (MP.mpf(theta) - self.of.beat_up_angle)
