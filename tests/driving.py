@@ -81,18 +81,18 @@ def moved(component: type[Component], time: float, quickening: float = 0.0) -> d
 
     `quickening` is added to each that is the rate of a rate.
     """
-    found = {variable.name: float(variable.start) for variable in inputs(component)}
+    moving = {variable.name: float(variable.start) for variable in inputs(component)}
     rate = {variable.name: variable.rate for variable in inputs(component)}
     seconds = {name: rate[first] for name, first in rate.items() if first and rate[first]}
     for second in set(seconds.values()):
-        found[second] += quickening
+        moving[second] += quickening
     for name, second in seconds.items():
         first = rate[name]
-        found[name] += time * (found[first] + 0.5 * time * found[second])
+        moving[name] += time * (moving[first] + 0.5 * time * moving[second])
     for name, first in rate.items():
         if first and name not in seconds:
-            found[name] += found[first] * time
-    return found
+            moving[name] += moving[first] * time
+    return moving
 
 
 def at_step_end(component: Component) -> bool:

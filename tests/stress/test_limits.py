@@ -30,8 +30,8 @@ def all_finite(component: Component) -> bool:
     return all(isfinite(getattr(component, variable.name)) for variable in declared(type(component)))
 
 
-def told(component: Component, problem: int) -> bool:
-    """Whether a problem ends the run; its text is one line about values of this component."""
+def ends_the_run(component: Component, problem: int) -> bool:
+    """Return whether a problem ends the run; its text is one line about values of this component."""
     if problem == 0:
         return False
     text = component.problems[problem - 1].text.format_map(
@@ -60,7 +60,7 @@ def run_at_corners(component: type[Component], seed: int, steps: int, **chosen: 
     rng = random.Random(seed)
     drawn = {v.name: corner(v, rng) for v in declared(component) if v.settable and rng.random() < 0.5}
     instance: Any = component(**(drawn | chosen))
-    if told(instance, instance.initialize(0.0)):
+    if ends_the_run(instance, instance.initialize(0.0)):
         return
     assert all_finite(instance), drawn
     speed = fabs(getattr(instance, "speed", 0.0)) or 42.0
@@ -69,7 +69,7 @@ def run_at_corners(component: type[Component], seed: int, steps: int, **chosen: 
         for variable in inputs(component):
             if rng.random() < 0.2:
                 setattr(instance, variable.name, corner(variable, rng))
-        if told(instance, instance.step(n * size, size)):
+        if ends_the_run(instance, instance.step(n * size, size)):
             return
         assert all_finite(instance), drawn
 
@@ -137,7 +137,7 @@ def test_a_rotor_never_turns_back_and_goes_round_once_in_a_turn(law, drawn):
     runs = 0
     for seed in drawn:
         drive = DobbyDrive(**drawn_law(law, random.Random(seed)))
-        if told(drive, drive.initialize(0.0)):
+        if ends_the_run(drive, drive.initialize(0.0)):
             continue
         runs += 1
         rows = []
@@ -174,7 +174,7 @@ def comes_back(rng: random.Random) -> bool:
         **{f"cam_angle_{n + 2}": angle for n, angle in enumerate(inner)},
         **{f"cam_height_{n + 2}": height for n, height in enumerate(heights)},
     )
-    if told(drive, drive.initialize(0.0)):
+    if ends_the_run(drive, drive.initialize(0.0)):
         return False
     rows = []
     for n in range(241):
