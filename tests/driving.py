@@ -6,9 +6,17 @@ import random
 from collections.abc import Iterator
 from typing import Any
 
+from loomfmu.components import DobbyDrive
 from loomfmu.declaring.variables import Component, Variable, variables_of
 
 declared = functools.cache(variables_of)  # a declaration does not change, and tests ask for it all the time
+# the number of each rotor law
+LAWS = {
+    name: number
+    for law in declared(DobbyDrive)
+    if law.name == "law"
+    for number, name in enumerate(law.choices, start=1)
+}
 
 
 def inputs(component: type[Component]) -> list[Variable]:
@@ -68,20 +76,23 @@ def drawn_parameters(component: type[Component], rng: random.Random) -> dict[str
     return drawn
 
 
-def moved(component: type[Component], time: float) -> dict[str, float]:
-    """Inputs that belong together: each goes on from its start with the rates it is declared to have."""
-    start = {variable.name: variable.start for variable in inputs(component)}
+def moved(component: type[Component], time: float, quickening: float = 0.0) -> dict[str, float]:
+    """Inputs that belong together: each goes on from its start with the rates it is declared to have.
+
+    `quickening` is added to each that is the rate of a rate.
+    """
+    moving = {variable.name: float(variable.start) for variable in inputs(component)}
     rate = {variable.name: variable.rate for variable in inputs(component)}
-    found = {}
-    for name, value in start.items():
+    seconds = {name: rate[first] for name, first in rate.items() if first and rate[first]}
+    for second in set(seconds.values()):
+        moving[second] += quickening
+    for name, second in seconds.items():
         first = rate[name]
-        second = rate[first] if first else None
-        found[name] = value
-        if first:
-            found[name] += start[first] * time
-        if second:
-            found[name] += start[second] * time * time / 2.0
-    return found
+        moving[name] += time * (moving[first] + 0.5 * time * moving[second])
+    for name, first in rate.items():
+        if first and name not in seconds:
+            moving[name] += moving[first] * time
+    return moving
 
 
 def at_step_end(component: Component) -> bool:
@@ -89,7 +100,8 @@ def at_step_end(component: Component) -> bool:
     return bool(getattr(component, "inputs_at_step_end", False))
 
 
-def advance(component: Component, time: float, step_size: float) -> int:
+def advance(component: Component, time: float, step_size: float, quickening: float = 0.0) -> int:
     """One step with inputs that belong together, given for the time that the component takes them for."""
-    assign(component, moved(type(component), time + step_size if at_step_end(component) else time))
+    taken = time + step_size if at_step_end(component) else time
+    assign(component, moved(type(component), taken, quickening))
     return component.step(time, step_size)

@@ -106,6 +106,19 @@ def sector_angle(weft: dict[str, Any], theta: Jet) -> Jet:
     return atan2(y, x) + weft["assembly"] * apex
 
 
+def six_bar(reed: Any, turned: Jet) -> tuple[Jet, Jet, Jet]:
+    """Reed coordinate, angle of the rocker and slope of the rod of a `ReedBeatUp`, by its crank's angle."""
+    x = MP.mpf(reed.crank_length) * cos(turned) + reed.crank_x
+    y = MP.mpf(reed.crank_length) * sin(turned) + reed.crank_y
+    square = x * x + y * y
+    coupler, rocker, arm = map(MP.mpf, (reed.coupler_length, reed.rocker_length, reed.arm_length))
+    apex = acos((square + (rocker**2 - coupler**2)) / (2 * rocker * sqrt(square)))
+    chi = atan2(y, x) + reed.assembly * apex
+    drop = Jet(reed.reed_height) - arm * sin(chi + reed.arm_angle)
+    reach = sqrt(Jet(MP.mpf(reed.rod_length) ** 2) - drop * drop)
+    return arm * cos(chi + reed.arm_angle) + reach, chi, atan2(drop, reach)
+
+
 class Machine:
     """A published machine: travel of its rapier head, free length and safe speed of its belt."""
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from foreign_motors import FIXED, FMI3, description2
-from hostile import LONG, SHORT, attacked, damaged, guarded, revalued
+from hostile import attacked, damaged, few_and_many, guarded, revalued
 
 from loomfmu import LoomfmuError, files
 from loomfmu.cosim.importing import fmus
@@ -46,7 +46,7 @@ def foreign(loom: dict[str, bytes]) -> dict[str, bytes]:
     return loom | {SSD: (text[:start] + text[end:]).encode()}
 
 
-@pytest.mark.parametrize("count", [SHORT, pytest.param(LONG, marks=pytest.mark.slow)])
+@few_and_many
 def test_damaged_packages_are_read_or_refused_in_one_line(
     tmp_path: Path, loom: dict[str, bytes], count: int
 ) -> None:
@@ -70,7 +70,7 @@ def test_damaged_packages_are_read_or_refused_in_one_line(
     attacked("packages", make, ssp_read.load, count)
 
 
-@pytest.mark.parametrize("count", [SHORT, pytest.param(LONG, marks=pytest.mark.slow)])
+@few_and_many
 def test_damaged_descriptions_of_fmus_are_read_or_refused_in_one_line(tmp_path: Path, count: int) -> None:
     texts = (description2(), FMI3.format(fixed=FIXED))
 

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from hostile import LONG, SHORT, attacked, damaged, guarded, revalued
+from hostile import attacked, damaged, few_and_many, guarded, revalued
 
 from loomfmu import LoomfmuError
 from loomfmu.cosim.reading import checked_claims
@@ -26,7 +26,7 @@ def read(path: Path) -> None:
         ssp.contents(scene, "live")
 
 
-@pytest.mark.parametrize("count", [SHORT, pytest.param(LONG, marks=pytest.mark.slow)])
+@few_and_many
 @pytest.mark.parametrize(
     ("name", "files", "read", "revalues", "damages"),
     [("scenes", "*.toml", read, 0.7, 0.5), ("weaves", "weaves/*.wif", weave.read_wif, 0.5, 0.7)],

@@ -80,19 +80,14 @@ def test_what_somebody_crafts_is_refused(
     record("traces crafted to do harm, shown", 1, 1)
 
 
-def attack(valid: bytes, path: Path, capsys: pytest.CaptureFixture[str], seeds: range) -> None:
+@pytest.mark.parametrize("seeds", [range(6), pytest.param(range(1000, 2000), marks=pytest.mark.slow)])
+def test_damaged_traces(
+    valid: bytes, tmp_path: Path, capsys: pytest.CaptureFixture[str], seeds: range
+) -> None:
     found: Counter[int] = Counter()
+    path = tmp_path / "damaged.h5"
     for seed in seeds:
         path.write_bytes(hostile_traces.damaged(valid, seed))
         found[shown(path, capsys)] += 1
     assert set(found) <= {0, 1, 2}
     record("damaged traces, shown", len(seeds), found[2])
-
-
-def test_damaged_traces(valid: bytes, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    attack(valid, tmp_path / "damaged.h5", capsys, range(6))
-
-
-@pytest.mark.slow
-def test_many_damaged_traces(valid: bytes, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    attack(valid, tmp_path / "damaged.h5", capsys, range(1000, 2000))

@@ -130,12 +130,9 @@ def kill_sweep(directory: Path, count: int, seed: int) -> None:
 
 
 @pytest.mark.slow
-def test_runs_and_a_sweep_that_are_killed(tmp_path: Path, fmu_cache: None) -> None:
-    kill_runs(tmp_path, 6, seed=1)
-    kill_sweep(tmp_path, 4, seed=1)
-
-
-@pytest.mark.slow
-def test_runs_and_a_sweep_that_are_killed_often(tmp_path: Path, fmu_cache: None) -> None:
-    kill_runs(tmp_path, 120, seed=2)
-    kill_sweep(tmp_path, 50, seed=2)
+@pytest.mark.parametrize(("runs", "sweeps", "seed"), [(6, 4, 1), (120, 50, 2)])
+def test_runs_and_a_sweep_that_are_killed(
+    tmp_path: Path, fmu_cache: None, runs: int, sweeps: int, seed: int
+) -> None:
+    kill_runs(tmp_path, runs, seed)
+    kill_sweep(tmp_path, sweeps, seed)

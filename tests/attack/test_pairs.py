@@ -38,15 +38,8 @@ def pair(directory: Path, revolutions: int) -> None:
 
 
 @pytest.mark.slow
-def test_short_runs_with_one_output(tmp_path: Path, fmu_cache: None) -> None:
-    for _ in range(4):
-        pair(tmp_path, 1)
-    record("pairs of runs with one output", 4)
-
-
-@pytest.mark.slow
-def test_many_runs_with_one_output(tmp_path: Path, fmu_cache: None) -> None:
-    for count, revolutions in ((24, 1), (3, 2000)):
-        for _ in range(count):
-            pair(tmp_path, revolutions)
-        record("pairs of runs with one output", count)
+@pytest.mark.parametrize(("count", "revolutions"), [(4, 1), (24, 1), (3, 2000)])
+def test_runs_with_one_output(tmp_path: Path, fmu_cache: None, count: int, revolutions: int) -> None:
+    for _ in range(count):
+        pair(tmp_path, revolutions)
+    record("pairs of runs with one output", count)

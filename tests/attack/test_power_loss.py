@@ -106,13 +106,9 @@ def lose_power(image: Path, rounds: int, seed: int) -> None:
 
 
 @pytest.mark.slow
-def test_a_trace_outlasts_a_power_loss(disk: Path, fmu_cache: None) -> None:
-    lose_power(disk, 2, seed=1)
-
-
-@pytest.mark.slow
-def test_traces_outlast_many_power_losses(disk: Path, fmu_cache: None) -> None:
-    lose_power(disk, 60, seed=2)
+@pytest.mark.parametrize(("rounds", "seed"), [(2, 1), (60, 2)])
+def test_traces_outlast_power_losses(disk: Path, fmu_cache: None, rounds: int, seed: int) -> None:
+    lose_power(disk, rounds, seed)
 
 
 @pytest.mark.few(1)

@@ -11,7 +11,7 @@ from typing import Any
 
 from compiled import compiled
 from records import Notes, Table, say
-from texts import Figures, Find, parts, whole
+from texts import Find, parts, whole
 
 from loomfmu.components import BeltDynamics
 from loomfmu.components.weft_insertion import WeftInsertion
@@ -92,8 +92,3 @@ def section(find: Find) -> str:
         " step, just before the belt is back in its guide.",
         whole(find(NAME)),
     )
-
-
-def figures(find: Find) -> Figures:
-    """None: the table says it all."""
-    return {}

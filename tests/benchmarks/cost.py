@@ -106,8 +106,6 @@ def _isolation(rows: list[Row]) -> str:
 def section(find: Find) -> str:
     """The costs, and what the others cost beside the cheapest of ours."""
     rows = find(NAME)
-    if not rows:
-        return "*Not run.*"
     said = []
     for flavour, cores in dict.fromkeys((row["FMUs"], row["cores"]) for row in rows):
         group = [row for row in rows if (row["FMUs"], row["cores"]) == (flavour, cores)]
@@ -150,8 +148,6 @@ def figures(find: Find) -> Figures:
     Points, not bars: their axis is logarithmic, where the length of a bar means nothing.
     """
     rows = find(NAME)
-    if not rows:
-        return {}
 
     def draw(figure: Any) -> None:
         kinds = list(dict.fromkeys(row["FMUs"] for row in rows))

@@ -16,7 +16,7 @@ from limits import HOST, LOOP, InC
 from own import Source, demo
 from records import Notes, Table, committed, say
 from scaling import WEFT
-from texts import Figures, Find, parts, whole
+from texts import Find, parts, whole
 
 NAME = "guard"
 STEPS = 1440  # in a revolution
@@ -91,8 +91,3 @@ def section(find: Find) -> str:
         " committed before and the change; another compiler or another libm changes them too.",
         whole(find(NAME)),
     )
-
-
-def figures(find: Find) -> Figures:
-    """None."""
-    return {}

@@ -12,7 +12,7 @@ from children import Task, Timing, children, in_turn, middle, spread
 from own import ENGINES, Ours, Source, Stepped, demo
 from records import Notes, Table, say
 from scaling import WEFT
-from texts import Figures, Find, error, parts, shown, table, whole
+from texts import Find, error, parts, shown, table, whole
 
 import loomfmu
 
@@ -155,8 +155,6 @@ _WHOLE = "One FMU of the whole loom is what `loomfmu export --fmu` writes, stepp
 def section(find: Find) -> str:
     """Each way beside the bare mathematics."""
     rows = find(NAME)
-    if not rows:
-        return "*Not run.*"
     least = next((row[STEP] for row in rows if row["what"] == LOOP), None)
     lines = []
     for row in rows:
@@ -179,8 +177,3 @@ def section(find: Find) -> str:
         " monitor finds between samples), nor a search at each sample (the deflection of a buckled belt). It"
         f" leaves out:\n\n{whole(find('limits_left_out'))}",
     )
-
-
-def figures(find: Find) -> Figures:
-    """None: the table says it all."""
-    return {}

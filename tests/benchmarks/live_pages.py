@@ -12,7 +12,7 @@ from typing import Any
 
 from own import DEMO
 from records import ROOT, Notes, Table, say
-from texts import Figures, Find, parts, whole
+from texts import Find, parts, whole
 
 from loomfmu import live_page
 
@@ -103,11 +103,6 @@ def section(find: Find) -> str:
         " claims, diagram, drawings and plots in sight follow, then the belts are there, too.",
         whole(find(NAME)),
     )
-
-
-def figures(find: Find) -> Figures:
-    """None: the table says it all."""
-    return {}
 
 
 if __name__ == "__main__":

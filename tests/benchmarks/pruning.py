@@ -6,7 +6,7 @@ from typing import Any
 from children import Child, Inside, Task, children, in_turn, middle, spread
 from own import Judged, Ours, Source, demo
 from records import Notes, Table, say
-from texts import Figures, Find, parts, shown, table
+from texts import Find, parts, shown, table
 
 NAME = "pruning"
 STEPS = 1440  # in a revolution
@@ -57,8 +57,6 @@ def _run(asked: Child | Inside, steps: int) -> str:
 def section(find: Find) -> str:
     """What each way saves."""
     rows = find(NAME)
-    if not rows:
-        return "*Not run.*"
     most = next((row[TIME] for row in rows if row["what"] == WHOLE), None)
     heads = ["what", "how", "ms per revolution", "spread, %", "repeats", "of the whole", "what is run"]
     lines = []
@@ -72,8 +70,3 @@ def section(find: Find) -> str:
         " judging, and on the window grid the coarse runs that look for the windows.",
         table(heads, lines),
     )
-
-
-def figures(find: Find) -> Figures:
-    """None."""
-    return {}

@@ -193,8 +193,6 @@ def section(find: Find) -> str:
 def figures(find: Find) -> Figures:
     """Step over instances, time and memory over steps."""
     instances, steps = find("scaling_instances"), find("scaling_steps")
-    if not instances or not steps:
-        return {}
 
     def draw(figure: Any) -> None:
         left, middle_, right = figure.subplots(1, 3)

@@ -13,7 +13,7 @@ from time import perf_counter
 
 from own import DEMO
 from records import Notes, Table, installed, say
-from texts import Figures, Find, parts, shown, whole
+from texts import Find, parts, shown, whole
 
 from loomfmu.fmi.native import platforms
 
@@ -177,8 +177,3 @@ def section(find: Find) -> str:
         "What a run imports, by package with all its modules, as `python -X importtime` tells it:",
         whole(find("imports")),
     )
-
-
-def figures(find: Find) -> Figures:
-    """None."""
-    return {}

@@ -14,7 +14,7 @@ import c_programs
 from own import DEMO, Source
 from records import Notes, Row, Table, installed, say
 from start_up import MAIN, PATIENCE
-from texts import Figures, Find, parts, shown, whole
+from texts import Find, parts, shown, whole
 
 import loomfmu
 from loomfmu.cosim.scenes import scene as scenes
@@ -147,8 +147,6 @@ def _swept(directory: Path, rows: int, processes: int) -> float:
 def section(find: Find) -> str:
     """Rows in a second."""
     rows = find(NAME)
-    if not rows:
-        return "*Not run.*"
     gain = ""
     if len(rows) == 2:
         one, two = ([row["rate [rows/s]"], _whole(row)] for row in rows)
@@ -172,8 +170,3 @@ def section(find: Find) -> str:
 def _whole(row: Row) -> float:
     """Seconds for all rows, the set-up included."""
     return float(row["set-up [s]"] + row["rows"] / row["rate [rows/s]"])
-
-
-def figures(find: Find) -> Figures:
-    """None."""
-    return {}

@@ -19,10 +19,8 @@ import running
 import start_up
 import written
 from children import Child, Failed
-from exact import MP, REDUCTION, Frame
 from limits import HOST, LOOP, NUMPY, WHOLE
-from precision import APART, delay
-from reference import Rotor
+from precision import delay
 from running import run
 
 Done = Callable[[str], Path]
@@ -131,19 +129,9 @@ def test_signals_that_follow_from_the_angle_have_the_digits_of_the_references(do
     (row,) = (row for row in find(done("precision"), "precision") if row["method"] == "loomfmu, native FMUs")
     assert row["error of heald_1.lift [share of largest]"] < 1e-14  # tens of roundings
     assert row["error of belt.margin [share of largest]"] < 1e-13
-
-
-def test_both_references_of_the_damper_are_one(done: Done) -> None:
-    away = {row["result"]: row["value"] for row in find(done("precision"), "references")}
-    assert away[APART] < 1e-15  # m, of 17 mm: what DOP853 is asked for is an absolute 1e-14
-
-
-@pytest.mark.parametrize("x", [0.1, 0.39, 0.4, 1.0, 2.5, 3.1])
-def test_the_rotor_law_integrated_by_hand_is_that_integrated_by_quadrature(x: float) -> None:
-    place, rotor = MP.mpf(x), Rotor("sloped_sine", REDUCTION)
-    wanted = rotor.angle(place), rotor.velocity(place), rotor.acceleration(place)
-    for found, other in zip(Frame().rotor(place), wanted, strict=True):
-        assert abs(found - other) < 1e-28  # 30 digits
+    # 45 steps are quintics over 8 deg: as the components' own tests have it
+    assert row["error of damper_1.displacement [share of largest]"] < 1e-8
+    assert row["error of peak load [share]"] < 1e-7
 
 
 def test_a_delay_is_found_from_an_error_and_the_rate() -> None:

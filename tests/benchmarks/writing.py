@@ -10,7 +10,7 @@ from children import Task, Timing, children, in_turn, middle, spread
 from numpy.typing import NDArray
 from own import SPEED, demo
 from records import Notes, Table, say
-from texts import Figures, Find, parts, whole
+from texts import Find, parts, whole
 
 import loomfmu
 from loomfmu.traces import Channel, TraceWriter
@@ -153,8 +153,3 @@ def section(find: Find) -> str:
         " channel, which counts here too.",
         whole(find(NAME)),
     )
-
-
-def figures(find: Find) -> Figures:
-    """None."""
-    return {}

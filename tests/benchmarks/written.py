@@ -17,7 +17,7 @@ import start_up
 import summary
 import sweep_runs
 import writing
-from records import Row, read
+from records import read
 from texts import Draw, Figures, Find, items, parts, table
 
 from loomfmu.extras import installed
@@ -66,9 +66,7 @@ Compare ratios within one table, not times between machines."""
 def text(results: Path) -> str:
     """The whole report from the tables below a directory."""
 
-    def find(name: str) -> list[Row]:
-        return read(results / FOLDER, name)
-
+    find = _tables(results)
     sections = [_section(title, module, find) for title, module in BENCHMARKS.values()]
     head = parts("## In short", *_pictures(summary, find), summary.section(find))
     return parts(TITLE, head, HOW, _machine(find), *sections, _not_run(find)) + "\n"
@@ -85,23 +83,34 @@ def write(results: Path) -> list[Path]:
     if not installed("plot"):
         return written
     for module in (summary, *(module for _title, module in BENCHMARKS.values())):
-        for name, (_caption, height, draw) in _figures(module, results).items():
+        for name, (_caption, height, draw) in _figures(module, _tables(results)).items():
             written.append(results / FOLDER / name)
             _draw(height, draw, written[-1])
     return written
 
 
-def _figures(module: Any, results: Path) -> Figures:
-    found: Figures = module.figures(lambda name: read(results / FOLDER, name))
+def _tables(results: Path) -> Find:
+    return lambda name: read(results / FOLDER, name)
+
+
+def _figures(module: Any, find: Find) -> Figures:
+    """The figures of a benchmark that was run; most have none."""
+    drawn = hasattr(module, "figures") and (module is summary or _was_run(module, find))
+    found: Figures = module.figures(find) if drawn else {}
     return found
 
 
+def _was_run(module: Any, find: Find) -> bool:
+    return bool(find(module.NAME) or find(f"{module.NAME}_steps"))
+
+
 def _section(title: str, module: Any, find: Find) -> str:
-    return parts(f"## {title}", module.section(find), *_pictures(module, find))
+    said = module.section(find) if _was_run(module, find) else "*Not run.*"
+    return parts(f"## {title}", said, *_pictures(module, find))
 
 
 def _pictures(module: ModuleType, find: Find) -> list[str]:
-    return [f"![{caption}]({FOLDER}/{name})" for name, (caption, _h, _d) in module.figures(find).items()]
+    return [f"![{caption}]({FOLDER}/{name})" for name, (caption, _h, _d) in _figures(module, find).items()]
 
 
 def _machine(find: Find) -> str:

@@ -27,6 +27,7 @@ from loomfmu.declaring.variables import EXTREMES, MIXED, MOTION, NOTHING, OWN, P
 from loomfmu.errors import numbered
 from loomfmu.loom.standard_loom import COMPONENT_OF
 
+QUICKENING = 300.0  # of a shaft or a head, in SI
 every_component = pytest.mark.parametrize("component", COMPONENTS.values(), ids=COMPONENTS)
 every_flag = pytest.mark.parametrize(
     ("component", "given"),
@@ -427,15 +428,43 @@ def test_no_sample_is_beyond_an_extreme(component, given):
 
 @pytest.mark.few(2, each="component")
 @every_flag
+def test_inputs_at_the_start_of_a_step_are_carried_over_it(component, given):
+    """What keeps nothing shows at the end of a step what inputs of that time make it show."""
+    if component.keeps != NOTHING or "inputs_at_step_end" not in given:
+        return
+    step_size = 3e-3
+    at_start, at_end = (component(**given | {"inputs_at_step_end": end}) for end in (False, True))
+    for instance in (at_start, at_end):
+        instance.initialize(0.0)
+    for n in range(60):
+        for instance in (at_start, at_end):
+            advance(instance, n * step_size, step_size, QUICKENING)
+        # angles of 10 rad are the same sums in another order; second rates of 1e4 magnify their rounding
+        same(values(at_start, "output"), values(at_end, "output"), 1e-11)
+
+
+@pytest.mark.few(2, each="component")
+@every_flag
 def test_rates_belong_to_their_outputs(component, given):
+    check_rates(component, given, 0.02, 0.0)  # away from the points of symmetry
+
+
+@every_component
+def test_rates_belong_to_their_outputs_on_a_shaft_that_speeds_up(component):
+    given = {"follow_shaft": True, "inputs_at_step_end": True}
+    if component.keeps == NOTHING and given.keys() <= {v.name for v in declared(component)}:
+        check_rates(component, given, 0.06, QUICKENING)  # while the pawl of a lock turns
+
+
+def check_rates(component, given, begin, quickening):
     rated = [v for v in declared(component) if v.causality == "output" and v.rate is not None]
     step_size = 1e-5
     instance = component(**given)
     instance.initialize(0.0)
-    advance(instance, 0.0, 0.02)  # away from the points of symmetry
+    advance(instance, 0.0, begin, quickening)
     rows = []
-    for n in range(2000, 2200):
-        advance(instance, n * step_size, step_size)
+    for n in range(200):
+        advance(instance, begin + n * step_size, step_size, quickening)
         rows.append(values(instance, "output"))
     for variable in rated:
         largest = max(abs(row[variable.rate]) for row in rows)

@@ -47,19 +47,6 @@ def test_at_a_slow_point_the_frame_rests_where_its_peg_wants_it(pegs, pick):
     assert frame.moving is (then != wanted)
 
 
-def test_a_pattern_of_128_picks_runs_and_repeats():
-    rng = random.Random(5)
-    pegs = [rng.randint(0, 1) for _ in range(128)]
-    frame = frame_of(pegs, stroke=1.0)
-    seen = [round(placed(frame, 2 * pi * (pick + 1e-9)).lift) for pick in range(-128, 256)]
-    assert seen == pegs * 3
-
-
-def test_requested_wraps_on_both_sides():
-    frame = frame_of([1, 0, 0])
-    assert [frame.requested(pick) for pick in (-3, -2, -1, 0, 1, 2, 3)] == [1, 0, 0, 1, 0, 0, 1]
-
-
 @pytest.mark.parametrize("peg", [0, 1])
 def test_a_frame_that_holds_does_not_move(peg):
     frame = frame_of([peg], stroke=0.1)
@@ -124,20 +111,6 @@ def test_warp_is_symmetric_about_the_closed_shed():
     heights = [placed(frame, angle).warp_height for angle in (0.0, pi, 2 * pi + 1e-9)]
     # 98 mm and a sixth of it: rounding
     assert heights == pytest.approx([-0.098 / 12, 0.0, 0.098 / 12], abs=1e-15)
-
-
-def test_inputs_at_the_start_of_a_step_are_carried():
-    held = frame_of([0, 1])
-    carried = frame_of([0, 1], inputs_at_step_end=False)
-    ends = frame_of([0, 1], inputs_at_step_end=True)
-    carried.rotor_angle, carried.rotor_velocity, carried.rotor_acceleration = 1.0, 40.0, 600.0
-    carried.step(0.0, 1e-3)
-    ends.rotor_angle, ends.rotor_velocity, ends.rotor_acceleration = 1.0403, 40.6, 600.0
-    ends.step(0.0, 1e-3)
-    placed(held, 1.0403, 40.6, 600.0)
-    for name in ("lift", "velocity", "acceleration"):
-        assert getattr(ends, name) == getattr(held, name)
-        assert getattr(carried, name) == pytest.approx(getattr(held, name), rel=1e-14)  # rounding of 1.0403
 
 
 def test_default_pattern_is_plain_weave_half_a_move_on():

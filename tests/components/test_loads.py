@@ -7,7 +7,6 @@ import pytest
 from driving import declared, flags, values
 from hypothesis import given
 from hypothesis import strategies as st
-from reference import MP, Rotor, machine
 
 from loomfmu.components import (
     COMPONENTS,
@@ -19,7 +18,6 @@ from loomfmu.components import (
     WarpTension,
     WeftInsertion,
 )
-from loomfmu.machines import parameters
 
 ANGLES = st.floats(-50.0, 50.0)
 SPEEDS = st.floats(-100.0, 100.0)
@@ -142,58 +140,6 @@ def test_torque_on_the_shaft_is_what_the_energies_ask_for(component, given):
 
 
 # The same against the energy alone, differentiated with 50 digits
-
-
-@pytest.mark.parametrize("name", ["WL680-3600", "WL800-3600", "WL450-4600"])
-def test_torque_of_head_belt_and_wheel_is_the_derivative_of_their_energy(name):
-    of = machine(name)
-    weft = WeftInsertion(
-        **parameters("WeftInsertion", machine=name),
-        belt_mass=0.06,
-        belt_length=2.5,
-        wheel_inertia=0.03,
-        moving_mass=0.1105,
-        **SHAFT,
-    )
-    radius = MP.mpf(weft.wheel_diameter) / 2
-    mass = MP.mpf("0.1105") + MP.mpf("0.06") * MP.mpf("2.5") + MP.mpf("0.03") / radius**2
-
-    def energy(time, theta):
-        """With the shaft at 60 rad/s and 500 rad/s2."""
-        _travel, slope, _bend = of.travel(theta + 60 * time + 250 * time**2)
-        return mass / 2 * (slope * (60 + 500 * time)) ** 2
-
-    for k in range(1, 40, 3):
-        theta = 0.16 * k
-        on_shaft(weft, theta, 60.0, 500.0)
-        exact = MP.diff(lambda time, theta=theta: energy(time, MP.mpf(theta)), 0) / 60
-        # torques of 1e4 N m and energies of 1e4 J, from the linkages' angles, which are rounded to 1e-15
-        assert abs(weft.shaft_torque - exact) < 1e-10
-        assert abs(weft.kinetic_energy - energy(0, MP.mpf(theta))) < 1e-10
-
-
-@pytest.mark.parametrize(("law", "name"), [(2, "harmonic_ends"), (3, "sloped_line"), (4, "sloped_sine")])
-def test_torque_of_frame_and_rotor_is_the_derivative_of_their_energy(law, name):
-    of = Rotor(name, 0.6)
-    dobby = DobbyDrive(law=law, speed_reduction=0.6, slow_point=0.0, rotor_inertia=0.05, **SHAFT)
-
-    def energies(time, theta):
-        """Of the frame and of the rotor, with the shaft at 40 rad/s and -300 rad/s2."""
-        turned = theta + 40 * time - 150 * time**2
-        angle, ratio = of.angle(turned), of.velocity(turned)
-        turning = ratio * (40 - 300 * time)
-        rise = MP.mpf(FRAME["stroke"]) / 4 * MP.sin(angle / 2) * turning
-        lift = MP.mpf(FRAME["stroke"]) * (1 - MP.cos(angle / 2)) / 2
-        frame = 17 * (rise**2 / 2 + MP.mpf(FRAME["gravity"]) * lift)
-        return frame, MP.mpf(0.05) * turning**2 / 2
-
-    for theta in (0.2, 0.9, 1.7, 2.8):
-        on_shaft(dobby, theta, 40.0, -300.0)
-        frame = driven(dobby, HealdFrame(pattern_1=2, **FRAME))
-        for part, component in enumerate((frame, dobby)):
-            exact = MP.diff(lambda t, part=part, theta=theta: energies(t, MP.mpf(theta))[part], 0) / 40
-            # rounding of torques up to 100 N m, with a few operations
-            assert abs(component.shaft_torque - exact) < 1e-12
 
 
 # Carrier and warp, along a motion of their frame

@@ -7,16 +7,12 @@ from math import cos, exp, pi, sin, sqrt
 import numpy as np
 import pytest
 from damper_reference import frame
-from driving import assign, values
 from reference import MP
 from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve
 
-from loomfmu.components.heald_damper import HealdDamper
-from loomfmu.components.heald_frame import HealdFrame
 from loomfmu.components.warp_tension import WarpTension
-from loomfmu.declaring.variables import variables_of
-from loomfmu.physics.rotor_laws.rotor import SLOPED_SINE, UNIFORM
+from loomfmu.physics.rotor_laws.rotor import SLOPED_SINE
 
 RPM = pi / 30.0
 FRONT, BACK = 0.25, 0.5
@@ -274,28 +270,6 @@ def test_outputs_at_a_sample_are_the_formulas():
     assert (np.sign(load) == -np.sign(y)).all()
 
 
-def test_load_takes_the_work_that_the_threads_take_up():
-    # a spring without pretension: the energy in it is what the eye has put in
-    warp = WarpTension(
-        inputs_at_step_end=True,
-        creep_rate=0.0,
-        relaxation_rate=0.0,
-        pretension=0.0,
-        shed_offset=0.0,
-        stroke=0.0,
-        lift=0.0,
-    )
-    warp.initialize(0.0)
-    work = 0.0
-    for n in range(1, 2001):
-        before = warp.frame_load
-        warp.lift, warp.velocity = n * 5e-5, 0.05
-        warp.step(0.0, 1e-3)
-        work -= 0.5 * (before + warp.frame_load) * 5e-5
-    energy = 1260 * 0.5 * 67.0 * warp.extension**2
-    assert work == pytest.approx(energy, rel=1e-6)  # trapezoids of 2000 parts
-
-
 def test_a_jump_of_the_inputs_is_elastic():
     warp = level()
     pull_to(warp, 0.001, 0.0, 0.0)
@@ -305,42 +279,6 @@ def test_a_jump_of_the_inputs_is_elastic():
     assert warp.tension == pytest.approx(0.15 + 67.0 * 0.005, rel=1e-14)  # rounding
     assert warp.highest_tension == pytest.approx(warp.tension, rel=1e-14)
     assert warp.elapsed == 0.0
-
-
-def test_restored_while_the_thread_is_slack():
-    swung = Swung(level(creep_rate=1.0, relaxation_rate=10.0, pretension=0.05))
-    saved = {}
-
-    def keep(t):
-        if swung.warp.slack and not saved:
-            saved.update(values(swung.warp), at=t)
-
-    swung.run(0.5, 100, keep)
-    again = WarpTension()
-    t = saved.pop("at")
-    assign(again, saved)
-    for n in range(round(t / 0.005) + 1, 101):
-        at = n * 0.005
-        pull_to(
-            again,
-            MIDDLE + SWING * sin(FREQUENCY * at),
-            SWING * FREQUENCY * cos(FREQUENCY * at),
-            -SWING * FREQUENCY**2 * sin(FREQUENCY * at),
-        )
-        again.step(at - 0.005, 0.005)
-    assert values(again) == values(swung.warp)  # the same bits
-
-
-def test_wires_have_the_same_units():
-    unit = {
-        component: {variable.name: variable.unit for variable in variables_of(component)}
-        for component in (HealdFrame, WarpTension, HealdDamper)
-    }
-    for name in ("lift", "velocity", "acceleration"):
-        assert unit[HealdFrame][name] == unit[WarpTension][name] == unit[HealdDamper][name]
-    assert unit[WarpTension]["frame_load"] == unit[HealdDamper]["warp_force"] == "N"
-    defaults = [component.__dataclass_fields__["stroke"].default for component in (HealdFrame, WarpTension)]
-    assert defaults[0] == defaults[1]
 
 
 # Measured tensions. Section 3.5: at 280 picks a minute 0.27 N on average in the lower and 0.30 N in the
@@ -380,43 +318,3 @@ def test_defaults_are_found_from_the_measured_means():
     assert WarpTension.__dataclass_fields__["shed_offset"].default == round(offset, 4) == 0.0018
     upper, lower = means(280.0, SLOPED_SINE, 0.0018, 67.0, 5.0, 10.0)
     assert (upper, lower) == pytest.approx((0.30, 0.27), rel=0.003)  # what the rounding leaves
-
-
-def test_measured_means():
-    warp, (tension, _load, lift) = woven(280.0, turns=20, steps=720)
-    last = slice(-1440, None)  # two picks, the transient gone to exp(-40)
-    upper = lift[last] > 0.049 - 0.0018
-    assert tension[last][upper].mean() == pytest.approx(0.30, abs=0.005)
-    assert tension[last][~upper].mean() == pytest.approx(0.27, abs=0.005)
-    # the component agrees with the transform, of 4000 points
-    expected = means(280.0, SLOPED_SINE, 0.0018, 67.0, 5.0, 10.0)
-    found = tension[last][upper].mean(), tension[last][~upper].mean()
-    assert found == pytest.approx(expected, abs=1e-3)
-    assert not warp.slack
-    assert warp.lowest_tension > 0.0
-
-
-def test_measured_maxima_are_not_reproduced():
-    # the loom of section 5.1 has a cosine law without dwell; nothing was tuned to its maxima
-    tension, y = periodic(300.0, UNIFORM, 0.0018, 67.0, 5.0, 10.0)
-    upper, lower = tension[y > 0.0].max(), tension[y < 0.0].max()
-    assert upper == pytest.approx(0.532, abs=5e-4)  # measured: 0.766
-    assert lower == pytest.approx(0.471, abs=5e-4)  # measured: 0.262
-    # no viscoelastic thread between the same lengths can have a ratio of 2.9 from an offset of 2 mm: the
-    # squares of the largest heights differ by 16 %
-    squares = (0.049 + 0.0018) ** 2 / (0.049 - 0.0018) ** 2
-    assert squares == pytest.approx(1.16, abs=5e-3)
-    woven_loom = woven(300.0, turns=16, steps=720, law=UNIFORM)[1][0][-1440:]
-    assert woven_loom.max() == pytest.approx(upper, abs=1e-5)  # two grids of samples
-    assert woven_loom.min() == pytest.approx(tension.min(), abs=1e-4)
-
-
-def test_load_of_the_source_counts_tension_at_right_angles():
-    # T = 5040 * 0.76 / 4 N takes the threads' tension for the load on the frame; of it, only the sines act
-    warp = WarpTension(lift=0.098, pretension=0.76, thread_stiffness=0.0, shed_offset=0.0)
-    warp.initialize(0.0)
-    assert warp.thread_count * 0.76 == pytest.approx(957.6)
-    y = 0.049
-    sines = y / sqrt(FRONT**2 + y * y) + y / sqrt(BACK**2 + y * y)
-    assert warp.frame_load == pytest.approx(-957.6 * sines, rel=1e-14)
-    assert sines == pytest.approx(0.29, abs=5e-3)

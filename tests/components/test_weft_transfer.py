@@ -127,22 +127,3 @@ def test_overlap_of_the_published_machines(name):
     assert transfer.overlap == pytest.approx(float(exact), abs=1e-12 * 6)  # of the two travels of 3 m
     assert 1000.0 * transfer.overlap == pytest.approx(OVERLAP[name], abs=0.05)  # digits in the README
     assert transfer.engaged
-
-
-def test_inputs_at_the_start_of_a_step_are_carried_over_it():
-    # heads of constant acceleration: the carried motion is theirs
-    at_start, at_end = WeftTransfer(), WeftTransfer(inputs_at_step_end=True)
-    motions = (2.0, 5.0, -700.0), (1.9, 8.0, -650.0)
-    h = 2e-3
-    for head_, (travel, velocity, acceleration) in zip(("giver", "taker"), motions, strict=True):
-        setattr(at_start, f"{head_}_travel", travel)
-        setattr(at_start, f"{head_}_velocity", velocity)
-        setattr(at_end, f"{head_}_travel", travel + velocity * h + 0.5 * acceleration * h * h)
-        setattr(at_end, f"{head_}_velocity", velocity + acceleration * h)
-        for each in (at_start, at_end):
-            setattr(each, f"{head_}_acceleration", acceleration)
-    for each in (at_start, at_end):
-        assert each.step(0.0, h) == 0
-    for name in ("overlap", "closing_velocity", "closing_acceleration", "offset", "offset_velocity"):
-        # the same sums in another order: rounding
-        assert getattr(at_start, name) == pytest.approx(getattr(at_end, name), abs=1e-12)

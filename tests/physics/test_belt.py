@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from reference import ALL_MACHINES, MP, RPM, machine
+from reference import ALL_MACHINES, MP, machine
 from scipy.interpolate import PchipInterpolator
 
 from loomfmu.machines import table
@@ -33,33 +33,8 @@ def test_length_factor_is_the_monotone_cubic_of_the_published_points():
         assert length_factor(at) == pytest.approx(float(monotone(at)), abs=1e-14)
 
 
-def test_length_factor_meets_every_published_point():
-    for clearance, factor in KNOTS:
-        assert length_factor(clearance) == pytest.approx(factor, abs=1e-15)  # rounding
-
-
-@given(st.floats(0.0, 2e-3), st.floats(0.0, 2e-3))
-def test_length_factor_grows_with_the_clearance(one, other):
-    # two clearances closer than rounding may come out the other way round by one rounding
-    assert length_factor(min(one, other)) <= length_factor(max(one, other)) + 1e-15
-
-
 def test_length_factor_above_the_table_is_that_of_a_pinned_column():
     assert [length_factor(c) for c in (0.8e-3, 0.9e-3, 1e-3, 0.05)] == [1.0] * 4
-
-
-def test_published_length_factors_follow_from_the_measured_loads():
-    # Table 2 of the paper, fitted by least squares to F = pi^2 EI / (mu l)^2, gives its Table 3
-    rows = table("belt_buckling_experiment")
-    fitted = []
-    for column in ("c_0", "c_0.30", "c_0.50", "c_0.75", "c_0.80"):
-        x = np.array([math.pi**2 * STIFFNESS / (1e-3 * float(row["free_length_mm"])) ** 2 for row in rows])
-        load = np.array([float(row[column]) for row in rows])
-        fitted.append(float(np.sqrt(x @ x / (x @ load))))
-    # three digits of a fit to loads that are printed in whole newtons
-    assert fitted == pytest.approx([0.704, 0.801, 0.891, 0.975, 1.019], abs=5e-4)
-    # the paper rounds to two digits, in steps of about 0.02
-    assert fitted == pytest.approx([factor for _clearance, factor in KNOTS], abs=0.02)
 
 
 @pytest.mark.parametrize("name", ALL_MACHINES)
@@ -132,56 +107,32 @@ def test_complete_elliptic_integral(modulus):
 
 
 @pytest.mark.parametrize(
-    "ratio", [1.0 + 1e-9, 1.0 + 1e-6, 1.001, (686 / 685) ** 2, 1.1, 2.0, 5.0, 50.0, 130.0]
+    "ratio", [1.0 + 1e-9, 1.0 + 1e-6, 1.001, (686 / 685) ** 2, 1.1, 2.0, 5.0, 50.0, 130.0, 138.0, 1e3, 1e6]
 )
 def test_deflection_is_the_exact_elastica(ratio):
     target = MP.pi / 2 * MP.sqrt(MP.mpf(ratio))
-    # sought in the logarithm of the complementary parameter: it does not crowd at 1 for high loads
-    bracket = (-2 * target, -MP.mpf("1e-12"))
-    rest = MP.findroot(
-        lambda x: MP.ellipk(1 - MP.exp(x)) - target, bracket, solver="anderson", tol=1e-60, maxsteps=200
-    )
-    k = MP.sqrt(1 - MP.exp(rest))
+    k = MP.mpf(1)  # but for 8 exp(-2 target)
+    if target < 45:
+        # sought in the logarithm of the complementary parameter: it does not crowd at 1 for high loads
+        bracket = (-2 * target, -MP.mpf("1e-12"))
+        rest = MP.findroot(
+            lambda x: MP.ellipk(1 - MP.exp(x)) - target, bracket, solver="anderson", tol=1e-60, maxsteps=200
+        )
+        k = MP.sqrt(1 - MP.exp(rest))
     exact = k / target
     # near the critical load k is the square root of a difference to 1: rounding over 1e-9 leaves 1e-7
     slack = 1e-12 + 1e-15 / (ratio - 1.0)
     assert abs(elastica_deflection(ratio, 1.0) / exact - 1) < slack
 
 
-def test_deflection_at_686_turns_against_685():
-    # the paper's figure shows 8 mm: critical position, length factor 0.8, free length 0.174 m
-    deflection = elastica_deflection((686 / 685) ** 2, 0.174)
-    assert deflection == pytest.approx(8.4e-3, abs=5e-5)  # two digits
-    assert machine("WL680-3600").free_length(machine("WL680-3600").worst_angle()) == pytest.approx(
-        0.174, abs=5e-4
-    )
-
-
-def test_printed_deflection_formula_gives_half():
-    # erratum of (11): half of the exact elastica and of the paper's own figure
-    share = math.sqrt((685 / 686) ** 2)  # sqrt(F_cr / F)
-    printed = (
-        2
-        * math.sqrt(2)
-        * 0.174
-        / math.pi
-        * math.sqrt((1 - share) / (2 * share**2 + share * math.sin(2 * math.pi * share) / math.pi))
-    )
-    assert printed == pytest.approx(4.2e-3, abs=5e-5)  # two digits
-    # exactly half for small deflections, up to a few times the overload of 0.3 %
-    assert elastica_deflection((686 / 685) ** 2, 0.174) / printed == pytest.approx(2.0, rel=1e-2)
-
-
 def test_deflection_is_none_below_the_critical_load_and_bounded_above():
-    assert elastica_deflection(1.0, 0.2) == 0.0
-    assert elastica_deflection(-3.0, 0.2) == 0.0
-    assert elastica_deflection(2.0, -0.2) == 0.0
+    for ratio in (-math.inf, -3.0, 0.0, 1.0 - 1e-16, 1.0):
+        assert elastica_deflection(ratio, 0.2) == 0.0
+    for inside in (0.0, -0.0, -5e-324, -0.2):
+        assert elastica_deflection(2.0, inside) == 0.0
     # beyond the modulus that a float can tell from 1 the load ratio alone remains: continuous there
     edge = (2 / math.pi * complete_elliptic(1.0 - 1e-15)) ** 2
     below, above = (elastica_deflection(edge * (1 + side), 1.0) for side in (-1e-9, 1e-9))
     assert below == pytest.approx(above, rel=1e-8)
-    assert elastica_deflection(1e12, 1.0) < 1e-5
-
-
-def test_speed_units():
-    assert float(RPM) == pytest.approx(math.pi / 30)
+    for ratio in (1e10, 1e100, 1.7e308):  # it folds
+        assert elastica_deflection(ratio, 0.2) == pytest.approx(0.4 / math.pi / ratio**0.5, rel=1e-15)

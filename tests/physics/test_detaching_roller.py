@@ -16,75 +16,9 @@ from loomfmu.physics.detaching_roller import (
     top_roller_torque,
 )
 
-RADIUS, TOP_RADIUS = 12.5e-3, 12.25e-3
-INERTIA, TOP_INERTIA = 135.64e-6, 33.98e-6
-NIP_LOAD, FRICTION = 300.0, 0.33
+RADIUS, INERTIA = 12.5e-3, 135.64e-6
 SPEED = 10 * pi  # 300 nips a minute
 KNOTS = [0.0, 1.5, 6.0, 11.0, 18.4, 25.0, 38.0, 40.0]
-
-
-def top_torque(inertia_torque):
-    """M12 that belongs to an M13."""
-    return top_roller_torque(inertia_torque / INERTIA, RADIUS, TOP_RADIUS, TOP_INERTIA)
-
-
-# Published numbers, Tables 1 and 2
-
-
-@pytest.mark.parametrize(("inertia_torque", "printed"), [(1.18, 0.31), (-0.53, -0.14)])
-def test_published_top_roller_torques(inertia_torque, printed):
-    # printed to 0.01 N m; so is M13, of which it is 0.26
-    assert top_torque(inertia_torque) == pytest.approx(printed, abs=7e-3)
-
-
-def test_erratum_the_valleys_have_lost_their_signs():
-    # with the valley as printed, +0.53 N m, the roller would never be braked: in one nip of 0.2 s it would
-    # gain at least 780 rad/s, and so in the next
-    assert 0.53 / INERTIA * 0.2 > 780.0
-    # M12 and M13 follow one acceleration: with the same sign on both valleys their ratio holds
-    assert pytest.approx(1.18 / 0.53, rel=0.01) == 0.31 / 0.14
-
-
-def test_erratum_the_inertias_are_in_kg_m2():
-    # printed kg mm2: the acceleration behind 1.18 N m would be a million times larger
-    assert pytest.approx(8699.5, abs=0.05) == 1.18 / INERTIA
-    rim = 1.18 / INERTIA * RADIUS  # 109 m/s2 at the web
-    assert 10.0 < rim < 1000.0
-
-
-def test_published_drafting_torque():
-    # with the valley of M12, 0.14 N m, it is at most 0.689; printed 0.68 asks for M12 = -0.12 at 23.8
-    at_most = drafting_force(1.0, FRICTION, NIP_LOAD, -0.14 / RADIUS) * RADIUS
-    assert at_most == pytest.approx(0.689, abs=5e-4)
-    asked = drafting_force(1.0, FRICTION, NIP_LOAD, -0.1225 / RADIUS) * RADIUS
-    assert asked == pytest.approx(0.68, abs=5e-4)
-
-
-def test_erratum_the_front_torque_is_not_the_sum():
-    # M2 = M12 + M13: the printed peak 1.36 and valley 0.61 are both 9 % less than their parts
-    assert 1.18 + top_torque(1.18) == pytest.approx(1.488, abs=5e-4)
-    assert pytest.approx(1.096, abs=5e-4) == (0.31 + 1.18) / 1.36
-    assert pytest.approx(1.098, abs=5e-4) == (0.14 + 0.53) / 0.61
-
-
-@pytest.mark.parametrize(
-    ("nips", "peak", "machine"), [(300, 2.73, 21.84), (400, 4.85, 38.80), (500, 7.57, 60.56)]
-)
-def test_published_peaks_grow_with_the_square_of_the_speed(nips, peak, machine):
-    # at 18.4 hardly any fibre is drafted yet; printed to 0.01 N m
-    assert peak == pytest.approx(2.73 * (nips / 300) ** 2, abs=0.02)
-    assert machine == pytest.approx(8 * peak, abs=5e-3)
-
-
-def test_published_valleys_ask_for_a_share_of_fibres():
-    # M = 2 (M12 + M13) + M11: one part goes with the square of the speed, the friction's not; two unknowns
-    # meet three printed valleys to their last digit
-    growing, constant = 1.157, 0.157
-    for nips, valley in ((300, -1.0), (400, -1.9), (500, -3.06)):
-        assert constant - growing * (nips / 300) ** 2 == pytest.approx(valley, abs=5e-3)
-    share = constant / (0.5 * FRICTION * NIP_LOAD * RADIUS)
-    assert share == pytest.approx(0.254, abs=5e-4)
-    assert assumed_fibre_share(26.1) == pytest.approx(share, abs=6e-3)
 
 
 # Equations

@@ -45,14 +45,9 @@ def agree(net, rise, duration, inertia, slope):
         assert abs(value - exact) <= 3e-15 * (abs(first) + abs(second)) + MP.mpf("1e-300")
 
 
-@given(torques, torques, decades, decades, decades)
+@given(torques, torques, decades, decades, st.one_of(st.just(0.0), decades.map(lambda power: 10.0**power)))
 def test_the_solution_is_exact_for_every_step_inertia_and_slope(net, rise, duration, inertia, slope):
-    agree(net, rise, 10.0**duration, 10.0**inertia, 10.0**slope)
-
-
-@given(torques, torques, decades, decades)
-def test_a_shaft_without_motor_coasts_exactly(net, rise, duration, inertia):
-    agree(net, rise, 10.0**duration, 10.0**inertia, 0.0)
+    agree(net, rise, 10.0**duration, 10.0**inertia, slope)
 
 
 @pytest.mark.parametrize("decay", [1e-18, 1e-9, 1e-3, 0.5, 2.999999, 3.0, 3.000001, 40.0, 1e3, 1e9, 1e18])
@@ -60,13 +55,6 @@ def test_no_decay_is_special(decay):
     # a series below 3 and a recursion above meet without a seam; exp(-1e3) is nought
     for net, rise in ((1.0, 0.0), (0.0, 1.0), (3.0, -2.0), (5.0, 5.0)):
         agree(net, rise, 0.5, 2.0, 4.0 * decay)
-
-
-def test_a_motor_that_has_all_the_time_gives_way_until_it_balances_the_load():
-    # N = N0 - k (w - w(0)) - dT comes to nothing, but for the load's own rate: w' = -dT / (k h)
-    velocity, _angle = moved(6.0, 4.0, 1e3, 0.01, 2.0)
-    lag = 0.01 * 4.0 / 1e3 / 2.0 / 2.0  # J dT / (k^2 h)
-    assert velocity == pytest.approx((6.0 - 4.0) / 2.0 + lag, rel=1e-15)
 
 
 @given(torques, torques, st.floats(0.0, 50.0), st.floats(-40.0, 40.0))
@@ -201,9 +189,3 @@ def test_many_sums_are_as_good_as_one(changes, start):
     # the sum rounded once; what is left over is itself rounded, 200 times to 1e-16 of 1
     assert value == pytest.approx(exact, rel=2.3e-16, abs=3e-14)
     assert value + rest == pytest.approx(exact, rel=2.3e-16)
-
-
-@given(st.floats(-1e9, 1e9), st.floats(-1e9, 1e9))
-def test_adding_nothing_changes_nothing(value, change):
-    total = summed(value, 0.0, change)
-    assert summed(*total, 0.0) == total

@@ -39,12 +39,6 @@ def crank_rockers(draw):
     return crank, coupler, rocker, frame * cos(towards), frame * sin(towards)
 
 
-# Published numbers of Yuan, Chen, Jiang and Zhou
-
-
-# Design
-
-
 # Kinematics
 
 

@@ -106,37 +106,36 @@ def check_together(instance: Live) -> None:
         ran(instance, instance.step(0.0, 1e-3))
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_bad_inputs_of_a_live_fmu(name):
-    instance = Live(name)
-    try:
-        check_inputs(instance)
-        check_together(instance)
-    finally:
-        instance.free()
+@pytest.fixture
+def instance(name):
+    made = Live(name)
+    yield made
+    made.free()
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", NAMES)
-def test_bad_parameters_of_a_live_fmu(name):
-    instance = Live(name)
-    try:
-        check_parameters(instance)
-    finally:
-        instance.free()
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", NAMES)
-def test_bad_values_of_a_native_fmu(name, monkeypatch):
+@pytest.fixture
+def native(monkeypatch):
     if find_spec("ziglang") is None or not sys.platform.startswith("linux"):
         pytest.skip("no native FMU can be built here")
     built = native_fmus()
     monkeypatch.setattr(live_fmus.fmus, "of_component", lambda of: built[of])
-    instance = Live(name)
-    try:
-        check_inputs(instance)
-        check_together(instance)
-        check_parameters(instance)
-    finally:
-        instance.free()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_bad_inputs_of_a_live_fmu(instance):
+    check_inputs(instance)
+    check_together(instance)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", NAMES)
+def test_bad_parameters_of_a_live_fmu(instance):
+    check_parameters(instance)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", NAMES)
+def test_bad_values_of_a_native_fmu(native, instance):
+    check_inputs(instance)
+    check_together(instance)
+    check_parameters(instance)

@@ -2,34 +2,22 @@
 
 import itertools
 import random
-from math import fabs, inf, isfinite, nextafter, pi
+from math import fabs, isfinite, nextafter, pi
 from typing import Any
 
 import mpmath
 import pytest
-from driving import declared, inputs
+from driving import LAWS, declared, inputs
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from whole_loom import TURN
 
-from loomfmu.components import COMPONENTS, BeltMonitor, BeltWrap, DobbyDrive, PatternLock, WarpTension
+from loomfmu.components import COMPONENTS, BeltMonitor, DobbyDrive, PatternLock
 from loomfmu.declaring.variables import Component, Variable
-from loomfmu.physics.belt import NO_LIMIT, elastica_deflection, length_factor
-from loomfmu.physics.rotor_laws.rotor import dwell_angle
+from loomfmu.physics.belt import NO_LIMIT
 
 MP = mpmath.mp.clone()
 MP.dps = 40
-
-LAWS = {
-    "uniform": 1,
-    "harmonic_ends": 2,
-    "sloped_line": 3,
-    "sloped_sine": 4,
-    "slotted_levers": 5,
-    "noncircular_gears": 6,
-    "spline_cam": 7,
-    "table": 8,
-}
 
 
 def seeds(few: int, many: int) -> Any:
@@ -42,8 +30,8 @@ def all_finite(component: Component) -> bool:
     return all(isfinite(getattr(component, variable.name)) for variable in declared(type(component)))
 
 
-def told(component: Component, problem: int) -> bool:
-    """Whether a problem ends the run; its text is one line about values of this component."""
+def ends_the_run(component: Component, problem: int) -> bool:
+    """Return whether a problem ends the run; its text is one line about values of this component."""
     if problem == 0:
         return False
     text = component.problems[problem - 1].text.format_map(
@@ -72,7 +60,7 @@ def run_at_corners(component: type[Component], seed: int, steps: int, **chosen: 
     rng = random.Random(seed)
     drawn = {v.name: corner(v, rng) for v in declared(component) if v.settable and rng.random() < 0.5}
     instance: Any = component(**(drawn | chosen))
-    if told(instance, instance.initialize(0.0)):
+    if ends_the_run(instance, instance.initialize(0.0)):
         return
     assert all_finite(instance), drawn
     speed = fabs(getattr(instance, "speed", 0.0)) or 42.0
@@ -81,7 +69,7 @@ def run_at_corners(component: type[Component], seed: int, steps: int, **chosen: 
         for variable in inputs(component):
             if rng.random() < 0.2:
                 setattr(instance, variable.name, corner(variable, rng))
-        if told(instance, instance.step(n * size, size)):
+        if ends_the_run(instance, instance.step(n * size, size)):
             return
         assert all_finite(instance), drawn
 
@@ -108,7 +96,7 @@ def test_corners_of_the_damper_run_or_are_refused(drawn):
 
 
 @seeds(8, 1500)
-@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("law", [law for law in LAWS if law != "plateau"])
 def test_corners_of_a_rotor_law_run_or_are_refused(law, drawn):
     for seed in drawn:
         run_at_corners(DobbyDrive, seed, 24, law=LAWS[law])
@@ -144,12 +132,12 @@ def drawn_law(law: str, rng: random.Random) -> dict[str, Any]:
 
 
 @seeds(10, 600)
-@pytest.mark.parametrize("law", [law for law in LAWS if law != "spline_cam"])
+@pytest.mark.parametrize("law", [law for law in LAWS if law not in ("spline_cam", "plateau")])
 def test_a_rotor_never_turns_back_and_goes_round_once_in_a_turn(law, drawn):
     runs = 0
     for seed in drawn:
         drive = DobbyDrive(**drawn_law(law, random.Random(seed)))
-        if told(drive, drive.initialize(0.0)):
+        if ends_the_run(drive, drive.initialize(0.0)):
             continue
         runs += 1
         rows = []
@@ -186,7 +174,7 @@ def comes_back(rng: random.Random) -> bool:
         **{f"cam_angle_{n + 2}": angle for n, angle in enumerate(inner)},
         **{f"cam_height_{n + 2}": height for n, height in enumerate(heights)},
     )
-    if told(drive, drive.initialize(0.0)):
+    if ends_the_run(drive, drive.initialize(0.0)):
         return False
     rows = []
     for n in range(241):
@@ -203,80 +191,7 @@ def comes_back(rng: random.Random) -> bool:
     return True
 
 
-@pytest.mark.parametrize("reduction", [0.0, 5e-324, 0.5, 1.0 - 1e-12, nextafter(1.0, 0.0), 1.0])
-@pytest.mark.parametrize("tolerance", [1e-9, 0.015, 0.5])
-@pytest.mark.parametrize("law", [1, 2, 3, 4])
-def test_a_dwell_is_found_at_every_reduction(law, tolerance, reduction):
-    dwell = dwell_angle(law, reduction, tolerance)
-    assert 0.0 < dwell <= TURN
-    assert dwell >= dwell_angle(law, reduction, 0.5 * tolerance)
-
-
 # The belt
-
-
-def elastica(load_ratio: Any) -> Any:
-    """Deflection over length of a buckled pinned column, in 40 digits."""
-    target = MP.pi / 2 * MP.sqrt(load_ratio)
-    if target > 45:
-        return 1 / target  # k = 1 - 8 exp(-2 K)
-    small = MP.sqrt(2 * (load_ratio - 1)) * (1 - (load_ratio - 1) / 8) if load_ratio < 1.001 else None
-    if small is not None:
-        k = MP.findroot(lambda k: MP.ellipk(k * k) - target, (small * 0.9, small * 1.1), solver="anderson")
-    else:
-        # in the complementary modulus, whose logarithm is all that is left of it at a large load
-        q = MP.findroot(
-            lambda q: MP.ellipk(1 - MP.exp(2 * q)) - target,
-            (MP.log(4) - target - 1, MP.mpf("-1e-3")),
-            solver="anderson",
-            tol=1e-30,
-        )
-        k = MP.sqrt(1 - MP.exp(2 * q))
-    return k / target
-
-
-@pytest.mark.parametrize(
-    "excess", [1e-15, 1e-12, 1e-9, 1e-6, 1e-3, 0.1, 1.0, 3.0, 20.0, 100.0, 135.0, 137.0, 150.0, 1e3, 1e6]
-)
-def test_a_buckled_belt_deflects_as_the_elastica(excess):
-    ratio = 1.0 + excess
-    exact = float(elastica(MP.mpf(ratio)))
-    # the square of the deflection goes with the excess, which is known to the rounding of the ratio, and
-    # with K - pi/2, which is known to 4e-16
-    slack = 1e-15 + 1e-15 / max(excess, 1e-15) ** 0.5
-    assert elastica_deflection(ratio, 1.0) == pytest.approx(exact, abs=slack)
-
-
-@pytest.mark.parametrize("ratio", [1e10, 1e100, 1e300, 1.7e308])
-def test_a_huge_load_folds_the_belt(ratio):
-    deflection = elastica_deflection(ratio, 0.2)
-    assert 0.0 <= deflection < 0.2
-    assert deflection == pytest.approx(0.4 / pi / ratio**0.5, rel=1e-15)
-
-
-@pytest.mark.parametrize("ratio", [-inf, -1.0, 0.0, 1.0 - 1e-16, 1.0])
-def test_up_to_the_critical_load_nothing_deflects(ratio):
-    assert elastica_deflection(ratio, 0.2) == 0.0
-
-
-@pytest.mark.parametrize("length", [0.0, -0.0, -5e-324, -1.0])
-def test_inside_its_guide_nothing_deflects(length):
-    assert elastica_deflection(2.0, length) == 0.0
-
-
-def test_the_length_factor_has_no_gaps():
-    knots = [0.0, 0.3e-3, 0.5e-3, 0.75e-3, 0.8e-3]
-    assert length_factor(0.0) == length_factor(5e-324) == 0.7
-    assert length_factor(0.05) == length_factor(0.8e-3) == 1.0
-    for knot in knots[1:]:
-        below, at, above = (
-            length_factor(value) for value in (nextafter(knot, 0.0), knot, nextafter(knot, 1.0))
-        )
-        # no steeper than 2000 1/m, over 1e-19 m: rounding of 1
-        assert below == pytest.approx(at, abs=4e-16)
-        assert above == pytest.approx(at, abs=4e-16)
-    values = [length_factor(1e-6 * n / 4.0) for n in range(4000)]
-    assert values == sorted(values)
 
 
 @pytest.mark.parametrize("free", [0.0, 5e-324, -5e-324, 1e-310, 1e-200, 1e-16, -1e-16, 1e-12, 1e-6, -1e-3])
@@ -305,11 +220,6 @@ def test_a_belt_that_hardly_leaves_its_guide(free, tension, clearance):
         assert 0.0 <= belt.lowest_speed_limit <= NO_LIMIT
 
 
-def test_a_negative_clearance_is_refused():
-    with pytest.raises(ValueError, match=r"guide_clearance = -1e-06 mm is outside \[0, 50\] mm"):
-        BeltMonitor(guide_clearance=-1e-9)
-
-
 def test_the_speed_limit_falls_from_none_without_a_gap():
     # from a free length of nothing outwards: none, then as the formula says
     belt = BeltMonitor(head_length=0.0, idle_travel=0.0, prescribe_length_factor=True, acceleration=400.0)
@@ -323,17 +233,6 @@ def test_the_speed_limit_falls_from_none_without_a_gap():
 
 
 # Others
-
-
-@settings(max_examples=50)
-@given(st.floats(1e-9, 1e6), st.floats(1e-3, 10.0), st.floats(1e-6, 0.01))
-def test_the_wrap_of_a_belt_follows_its_formula_everywhere(stiffness, diameter, clearance):
-    wrap = BeltWrap(bending_stiffness=stiffness, wheel_diameter=diameter, block_clearance=clearance)
-    assert wrap.initialize(0.0) == 0
-    arm = 3 * MP.sqrt(MP.mpf(diameter) * MP.mpf(clearance) + MP.mpf(clearance) ** 2)
-    # a few roundings
-    assert wrap.lever_arm == pytest.approx(float(arm), rel=1e-15)
-    assert wrap.restraint_load == pytest.approx(float(2 * MP.mpf(stiffness) / (diameter * arm)), rel=2e-15)
 
 
 @settings(max_examples=50)
@@ -356,27 +255,3 @@ def test_a_pawl_gets_over_at_any_corner(seed):
             # from one disc to the other, and never farther
             assert -1e-12 <= lock.turn / lock.whole_turn <= 1.0 + 1e-12
     assert lock.speed_limit == min(lock.torque_speed_limit, lock.release_speed_limit)
-
-
-@pytest.mark.parametrize("relaxation", [0.0, 5e-324, 1e-9, 1.0, 1e6])
-@pytest.mark.parametrize("creep", [0.0, 1e-9, 1.0, 1e6])
-@pytest.mark.parametrize("size", [1e-9, 1e-3, 1.0, 1e3])
-def test_a_thread_held_tight_relaxes_as_its_law_says(relaxation, creep, size):
-    # at a constant extension x: F(t) = b x [n/r + (1 - n/r) exp(-r t)], and without relaxation b x (1 + n t)
-    warp = WarpTension(
-        creep_rate=creep,
-        relaxation_rate=relaxation,
-        pretension=1e3,
-        thread_stiffness=1e-3,
-        inputs_at_step_end=True,
-    )
-    warp.initialize(0.0)
-    tight = 1e-3 * warp.extension
-    time = 0.0
-    for n in range(20):
-        assert warp.step(time, size) == 0
-        time += size
-        fade = -MP.expm1(-MP.mpf(relaxation) * time) / relaxation if relaxation > 0.0 else MP.mpf(time)
-        exact = MP.mpf(tight) * (1 + (creep - MP.mpf(relaxation)) * fade)
-        # each step is rounded a few times
-        assert warp.sampled_force == pytest.approx(float(exact), rel=1e-14 * (n + 1) + 1e-13)

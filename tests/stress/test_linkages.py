@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 from driving import declared
-from reference import ALL_MACHINES, MP, Jet, acos, atan2, cos, sector_angle, sin, sqrt
+from reference import ALL_MACHINES, MP, Jet, sector_angle, six_bar
 from whole_loom import TURN
 
 from loomfmu.components import ReedBeatUp, WeftInsertion
@@ -82,20 +82,8 @@ def weft_reference(given: dict[str, Any], instance: WeftInsertion, angle: float)
 
 def reed_reference(given: dict[str, Any], instance: ReedBeatUp, angle: float) -> Jet:
     """Reed coordinate by the closed form of its two loops."""
-    of = {name: MP.mpf(getattr(instance, name)) for name in REED}
-    crank = Jet(
-        MP.mpf(instance.beat_up_crank) + instance.crank_direction * MP.mpf(angle), instance.crank_direction
-    )
-    x = cos(crank) * of["crank_length"] + of["crank_x"]
-    y = sin(crank) * of["crank_length"] + of["crank_y"]
-    square = x * x + y * y
-    apex = acos(
-        (square + (of["rocker_length"] ** 2 - of["coupler_length"] ** 2))
-        / (sqrt(square) * (2 * of["rocker_length"]))
-    )
-    arm = atan2(y, x) + apex * instance.assembly + of["arm_angle"]
-    drop = sin(arm) * -of["arm_length"] + of["reed_height"]
-    return cos(arm) * of["arm_length"] + sqrt(drop * -drop + of["rod_length"] ** 2)
+    direction = instance.crank_direction
+    return six_bar(instance, Jet(MP.mpf(instance.beat_up_crank) + direction * MP.mpf(angle), direction))[0]
 
 
 def check_edges(component: Any, base: dict[str, Any], names: tuple[str, ...], reference: Any) -> set[int]:

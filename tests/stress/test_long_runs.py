@@ -150,7 +150,7 @@ def test_the_warps_extremes_do_not_creep():
 
 def test_a_shaft_beyond_all_counting_is_refused():
     # 2e9 rad, 3e8 turns: before a count of picks would leave the 32 bits of an FMI integer
-    for name in (*FOLLOWERS, "BeltMonitor"):
+    for name in (*FOLLOWERS, "BeltMonitor", "WeftTension"):
         part = COMPONENTS[name](speed=1000.0)
         assert part.initialize(0.0) == 0
         assert part.step(1.9e6, 0.0) == 0

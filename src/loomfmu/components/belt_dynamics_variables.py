@@ -230,7 +230,6 @@ class BeltDynamicsVariables(Component):
         "The deflection is known now: its motion is followed, and the free length is at most 5 times"
         " bow_length if the belt has the bow",
         start=True,
-        variability="discrete",
     )
     largest_deflection: float = output(
         "m",
@@ -283,7 +282,6 @@ class BeltDynamicsVariables(Component):
         "1",
         "Side of its guide on which the belt leans, 1 or -1; 0 while it turns freely",
         start=0,
-        variability="discrete",
         valid_if=KNOWN,
     )
     guide_moment: float = output(
@@ -310,21 +308,14 @@ class BeltDynamicsVariables(Component):
         nominal=1e-9,
         valid_if=FOLLOWED,
     )
-    folded: bool = output(
-        "1", "The belt has folded at least once", start=False, variability="discrete", so_far=True
-    )
+    folded: bool = output("1", "The belt has folded at least once", start=False, so_far=True)
     followed: bool = output(
-        "1",
-        "The belt's motion could always be followed; if not, take more steps",
-        start=True,
-        variability="discrete",
-        so_far=True,
+        "1", "The belt's motion could always be followed; if not, take more steps", start=True, so_far=True
     )
     too_long: bool = output(
         "1",
         "The free length has been above 5 times bow_length, where largest_deflection does not count",
         start=False,
-        variability="discrete",
         so_far=True,
     )
 

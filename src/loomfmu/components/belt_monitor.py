@@ -308,12 +308,7 @@ class BeltMonitor(BeltVariables):
         self.speed_limit = NO_LIMIT
         if self.joined_turning:
             self.speed_limit = speed_limit(
-                self.free_length,
-                bend,
-                self.length_factor,
-                self.bending_stiffness,
-                self.head_mass,
-                weft,
+                self.free_length, bend, self.length_factor, self.bending_stiffness, self.head_mass, weft
             )
         self.deflection = elastica_deflection(1.0 - self.margin, self.free_length)
         self.at_risk = self.free_length > 0.0 and self.axial_force > 0.0

@@ -119,9 +119,7 @@ class BeltVariables(ShaftDriven):
     deflection: float = output(
         "m", "Largest deflection of the buckled belt, exact elastica", display="mm", nominal=5e-3
     )
-    at_risk: bool = output(
-        "1", "The belt is outside its guide and in compression", start=False, variability="discrete"
-    )
+    at_risk: bool = output("1", "The belt is outside its guide and in compression", start=False)
     largest_deflection: float = output(
         "m",
         "Largest deflection so far, on the continuous curve",
@@ -129,13 +127,7 @@ class BeltVariables(ShaftDriven):
         nominal=5e-3,
         highest_of="deflection",
     )
-    buckled: bool = output(
-        "1",
-        "The belt has buckled at least once",
-        start=False,
-        variability="discrete",
-        lowest_of="margin",
-    )
+    buckled: bool = output("1", "The belt has buckled at least once", start=False, lowest_of="margin")
 
     acceleration_rate: float = auxiliary("m/s3", "Rate of the acceleration between the last two samples")
     bend_rate: float = auxiliary("m/s", "Rate of the second derivative by shaft angle between the samples")

@@ -7,6 +7,7 @@ from typing import ClassVar
 from ..declaring.declarations import input_, output, parameter
 from ..declaring.variables import NOTHING, PUBLISHED, Component
 from ..physics.belt_wrap import bending_moment, lever_arm, restraint_load
+from .shared_declarations import found_once
 
 
 @dataclass(slots=True)
@@ -46,9 +47,7 @@ class BeltWrap(Component):
     restraint_load: float = output(
         "N", "Load of each block on the belt", nominal=10.0, follows="block_clearance"
     )
-    bending_moment: float = output(
-        "N.m", "Moment that bends the belt onto the wheel", variability="discrete", depends=()
-    )
+    bending_moment: float = found_once("N.m", "Moment that bends the belt onto the wheel")
 
     def initialize(self, time: float) -> int:
         """Bend the belt to the wheel."""

@@ -6,6 +6,7 @@ from typing import ClassVar
 
 from ..declaring.declarations import at_step_end, input_, output, parameter, state
 from ..declaring.variables import MIXED, Problem, Terminal
+from .shared_declarations import frame_acceleration, frame_lift, frame_velocity
 from .terminals import CARRIER, FRAME
 from .threads import Threads
 
@@ -85,11 +86,7 @@ class DamperVariables(Threads):
         nominal=1e6,
     )
     stop_restitution: float = parameter(
-        "1",
-        0.5,
-        "Coefficient of restitution of a stop (assumed)",
-        minimum=0.15,
-        maximum=1.0,
+        "1", 0.5, "Coefficient of restitution of a stop (assumed)", minimum=0.15, maximum=1.0
     )
     start_displacement: float = parameter(
         "m", 0.0, "Displacement of the carrier at the start", display="mm", minimum=-1.0, maximum=1.0
@@ -98,15 +95,9 @@ class DamperVariables(Threads):
         "m/s", 0.0, "Rate of the displacement at the start", minimum=-1e3, maximum=1e3
     )
     inputs_at_step_end: bool = at_step_end()
-    lift: float = input_(
-        "m", 0.0, "Lift of the frame", display="mm", nominal=0.1, rate="velocity", minimum=-1e3, maximum=1e3
-    )
-    velocity: float = input_(
-        "m/s", 0.0, "Velocity of the frame", rate="acceleration", minimum=-1e9, maximum=1e9
-    )
-    acceleration: float = input_(
-        "m/s2", 10.0, "Acceleration of the frame", nominal=10.0, minimum=-1e15, maximum=1e15
-    )
+    lift: float = frame_lift(0.0)
+    velocity: float = frame_velocity()
+    acceleration: float = frame_acceleration(10.0)
     warp_force: float = input_(
         "N",
         0.0,
@@ -134,9 +125,7 @@ class DamperVariables(Threads):
     carrier_velocity: float = output("m/s", "Velocity of the carrier in space", rate="carrier_acceleration")
     carrier_acceleration: float = output("m/s2", "Acceleration of the carrier in space", nominal=100.0)
     warp_load: float = output("N", "Load of the threads on the carrier, positive upwards", nominal=100.0)
-    stop_contacts: int = output(
-        "1", "Contacts with a stop so far", start=0, variability="discrete", so_far=True
-    )
+    stop_contacts: int = output("1", "Contacts with a stop so far", start=0, so_far=True)
     peak_load: float = output(
         "N", "Largest transmitted force so far, on the continuous curve", nominal=1000.0, so_far=True
     )
@@ -156,11 +145,7 @@ class DamperVariables(Threads):
     damping: float = state("N.s/m", "Damping of the suspension", minimum=0.0)
     stop_damping: float = state("N.s/m", "Damping of a stop", minimum=0.0)
     contact: int = state(
-        "1",
-        "0 free, 1 and -1 on the upper and lower stop, 2 and -2 released",
-        start=0,
-        minimum=-2,
-        maximum=2,
+        "1", "0 free, 1 and -1 on the upper and lower stop, 2 and -2 released", start=0, minimum=-2, maximum=2
     )
     sampled_lift: float = state("m", "Lift at the last sample of the inputs")
     sampled_velocity: float = state("m/s", "Velocity at the last sample")

@@ -8,6 +8,7 @@ from ..declaring.arrays import array
 from ..declaring.declarations import at_step_end, input_, output, parameter, state
 from ..declaring.variables import Component, Terminal
 from ..physics.driven_shaft import bulge_for, driven_motion, summed, work_of
+from .shared_declarations import shaft_speed, shaft_start
 from .terminals import SHAFT
 
 LOADS = 32  # mechanisms: 28 heald frames, dobby, both rapiers and reed
@@ -26,15 +27,7 @@ class DrivenShaft(Component):
     accuracy: ClassVar[str] = "fourth order in the step; second for a load that does not state its work"
     longest_turn: ClassVar[float] = inf
 
-    speed: float = parameter(
-        "rad/s",
-        41.88790204786391,
-        "No-load speed of the motor, referred to the shaft",
-        display="rev/min",
-        minimum=-1000.0,
-        maximum=1000.0,
-        nominal=50.0,
-    )
+    speed: float = shaft_speed("No-load speed of the motor, referred to the shaft")
     torque_slope: float = parameter(
         "N.m.s/rad",
         40.0,
@@ -50,14 +43,7 @@ class DrivenShaft(Component):
         minimum=1e-6,
         maximum=1e6,
     )
-    start_angle: float = parameter(
-        "rad",
-        0.0,
-        "Shaft angle at the start; 0 is the rapiers' outer dead centre",
-        display="deg",
-        minimum=-1e6,
-        maximum=1e6,
-    )
+    start_angle: float = shaft_start("Shaft angle at the start; 0 is the rapiers' outer dead centre")
     start_at_speed: bool = parameter("1", True, "Start at speed; if false, from rest")
     inputs_at_step_end: bool = at_step_end()
     use_work: tuple[bool, ...] = array(

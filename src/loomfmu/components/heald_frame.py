@@ -10,17 +10,9 @@ from ..declaring.variables import MIXED, NOTHING, Component, Problem, Terminal
 from ..physics.heald import crank_slope, lift_fraction, peg, slow_points_passed
 from ..physics.shaft import carried, too_far
 from .shaft_driven import turned_too_far
-from .terminals import FRAME, ROTOR
+from .terminals import FRAME, OF_ROTOR, ROTOR
 
-_OF_ROTOR = (
-    "rotor_angle",
-    "rotor_velocity",
-    "rotor_acceleration",
-    "lift_fraction",
-    "lift_rate",
-    "lift_acceleration",
-)
-_OF_TORQUES = (*_OF_ROTOR, "rotor_ratio", "lift_slope", "load")
+_OF_TORQUES = (*OF_ROTOR, "rotor_ratio", "lift_slope", "load")
 _SLOWEST = 1e-9  # rotor_ratio below which the rotor stands: a cam then has no torque about it
 
 
@@ -40,14 +32,7 @@ class HealdFrame(Component):
     origin: ClassVar[str] = MIXED
     longest_turn: ClassVar[float] = inf
     terminals: ClassVar[tuple[Terminal, ...]] = (
-        ROTOR.of(
-            "rotor_angle",
-            "rotor_velocity",
-            "rotor_acceleration",
-            "lift_fraction",
-            "lift_rate",
-            "lift_acceleration",
-        ),
+        ROTOR.of(*OF_ROTOR),
         FRAME.of("lift", "velocity", "acceleration"),
     )
 
@@ -196,32 +181,28 @@ class HealdFrame(Component):
         display="mm",
         nominal=0.1,
         rate="velocity",
-        depends=_OF_ROTOR,
+        depends=OF_ROTOR,
     )
-    velocity: float = output("m/s", "Velocity of the frame", rate="acceleration", depends=_OF_ROTOR)
-    acceleration: float = output("m/s2", "Acceleration of the frame", nominal=10.0, depends=_OF_ROTOR)
+    velocity: float = output("m/s", "Velocity of the frame", rate="acceleration", depends=OF_ROTOR)
+    acceleration: float = output("m/s2", "Acceleration of the frame", nominal=10.0, depends=OF_ROTOR)
     warp_height: float = output(
         "m",
         "Height of the warp above the closed shed, at the rapier",
         display="mm",
         nominal=0.01,
-        depends=_OF_ROTOR,
+        depends=OF_ROTOR,
     )
     inertia_force: float = output(
-        "N", "Inertia force of the frame without its sprung mass", nominal=100.0, depends=_OF_ROTOR
+        "N", "Inertia force of the frame without its sprung mass", nominal=100.0, depends=OF_ROTOR
     )
     moving: bool = output(
-        "1",
-        "The frame changes position between the current slow points",
-        start=False,
-        variability="discrete",
-        depends=_OF_ROTOR,
+        "1", "The frame changes position between the current slow points", start=False, depends=OF_ROTOR
     )
     drive_force: float = output(
         "N",
         "Force of the drive on the frame, upwards: inertia and weight, less load if that is wired",
         nominal=100.0,
-        depends=(*_OF_ROTOR, "load"),
+        depends=(*OF_ROTOR, "load"),
     )
     rotor_torque: float = output(
         "N.m",
@@ -236,10 +217,10 @@ class HealdFrame(Component):
         depends=_OF_TORQUES,
     )
     kinetic_energy: float = output(
-        "J", "Kinetic energy of the frame without its sprung mass", nominal=10.0, depends=_OF_ROTOR
+        "J", "Kinetic energy of the frame without its sprung mass", nominal=10.0, depends=OF_ROTOR
     )
     potential_energy: float = output(
-        "J", "Energy of the frame's weight, from its lowered position", nominal=10.0, depends=_OF_ROTOR
+        "J", "Energy of the frame's weight, from its lowered position", nominal=10.0, depends=OF_ROTOR
     )
     passed_torque: float = output(
         "N.m",
@@ -251,7 +232,7 @@ class HealdFrame(Component):
         "J",
         "Work taken from the shaft: kinetic and potential energy, and load_work if it is used",
         nominal=10.0,
-        depends=(*_OF_ROTOR, "load_work"),
+        depends=(*OF_ROTOR, "load_work"),
     )
     slow_point_event: float = indicator("1", "Passes zero where the frame may begin or end a change")
 

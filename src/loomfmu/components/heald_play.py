@@ -8,6 +8,7 @@ from ..declaring.declarations import at_step_end, input_, output, parameter, sta
 from ..declaring.variables import Component, Problem, Terminal
 from ..physics.heald_play import distance, until_bar, until_free
 from ..physics.numerics.motion import joined, moved_on
+from .shared_declarations import frame_acceleration, frame_lift, frame_velocity
 from .terminals import FRAME
 
 MOST_FLIGHTS = 10000  # in one step
@@ -66,22 +67,9 @@ class HealdPlay(Component):
         source="warp_#.thread_count",
     )
     inputs_at_step_end: bool = at_step_end()
-    lift: float = input_(
-        "m",
-        0.0,
-        "Lift of the bars that carry the heald",
-        display="mm",
-        nominal=0.1,
-        rate="velocity",
-        minimum=-1e3,
-        maximum=1e3,
-    )
-    velocity: float = input_(
-        "m/s", 0.0, "Velocity of the bars", rate="acceleration", minimum=-1e9, maximum=1e9
-    )
-    acceleration: float = input_(
-        "m/s2", -20.0, "Acceleration of the bars", nominal=10.0, minimum=-1e15, maximum=1e15
-    )
+    lift: float = frame_lift(0.0, "the bars that carry the heald")
+    velocity: float = frame_velocity("the bars")
+    acceleration: float = frame_acceleration(-20.0, "the bars")
     warp_load: float = input_(
         "N",
         0.0,
@@ -96,9 +84,7 @@ class HealdPlay(Component):
     )
     rate: float = output("m/s", "Rate of the displacement")
     travel: float = output("m", "Way of the heald in its play so far", display="mm", nominal=0.1, so_far=True)
-    blows: int = output(
-        "1", "Blows of the heald on the bars so far", start=0, variability="discrete", so_far=True
-    )
+    blows: int = output("1", "Blows of the heald on the bars so far", start=0, so_far=True)
     blow_velocity: float = output("m/s", "Velocity of the last blow", variability="discrete", nominal=0.1)
     hardest_blow: float = output(
         "m/s",

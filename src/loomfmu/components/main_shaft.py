@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 from ..declaring.declarations import output, parameter
 from ..declaring.variables import NOTHING, Component, Terminal
 from ..physics.shaft import shaft_motion
+from .shared_declarations import shaft_speed, shaft_start
 from .terminals import SHAFT
 
 WAVE = 16  # least steps in a ripple of the speed, and in the start-up
@@ -22,23 +23,8 @@ class MainShaft(Component):
     longest_turn: ClassVar[float] = inf
     unsteady: ClassVar[tuple[str, ...]] = ("ramp_duration", "ripple_amplitude")
 
-    speed: float = parameter(
-        "rad/s",
-        41.88790204786391,
-        "Mean shaft speed after the start-up; one revolution is one pick",
-        display="rev/min",
-        minimum=-1000.0,
-        maximum=1000.0,
-        nominal=50.0,
-    )
-    start_angle: float = parameter(
-        "rad",
-        0.0,
-        "Shaft angle at time 0; 0 is the rapiers' outer dead centre",
-        display="deg",
-        minimum=-1e6,
-        maximum=1e6,
-    )
+    speed: float = shaft_speed("Mean shaft speed after the start-up; one revolution is one pick")
+    start_angle: float = shaft_start("Shaft angle at time 0; 0 is the rapiers' outer dead centre")
     ramp_duration: float = parameter(
         "s", 0.0, "Duration of the start-up from rest at time 0; 0 for no start-up", minimum=0.0, maximum=1e4
     )

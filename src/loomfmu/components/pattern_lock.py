@@ -19,6 +19,7 @@ from ..physics.pattern_lock import (
 )
 from ..physics.shaft import too_far
 from .shaft_driven import TOO_FAR, ShaftDriven
+from .shared_declarations import found_once, link_length
 
 
 @dataclass(slots=True)
@@ -73,9 +74,7 @@ class PatternLock(ShaftDriven):
     spring_stiffness: float = parameter(
         "N/m", 2500.0, "Stiffness of the spring", display="N/mm", minimum=1e-3, maximum=1e9, nominal=1e3
     )
-    lever_arm: float = parameter(
-        "m", 0.050, "Lever arm of the spring", display="mm", minimum=1e-4, maximum=10.0, nominal=0.1
-    )
+    lever_arm: float = link_length(0.050, "Lever arm of the spring")
     available_angle: float = parameter(
         "rad",
         1.5707963267948966,
@@ -105,13 +104,8 @@ class PatternLock(ShaftDriven):
         "1",
         "Share of the spring's torque left over by the pawl's inertia; above 1 where it slows the pawl down",
     )
-    release_time: float = output(
-        "s",
-        "Time the spring takes to throw the pawl over",
-        display="ms",
-        variability="discrete",
-        nominal=0.01,
-        depends=(),
+    release_time: float = found_once(
+        "s", "Time the spring takes to throw the pawl over", display="ms", nominal=0.01
     )
     available_time: float = output(
         "s",
@@ -124,32 +118,16 @@ class PatternLock(ShaftDriven):
         "1",
         "At this speed the pawl changes over in time and its spring is strong enough",
         start=False,
-        variability="discrete",
         depends=("shaft_velocity", "shaft_acceleration"),
     )
-    torque_speed_limit: float = output(
-        "rad/s",
-        "Shaft speed up to which the spring is strong enough",
-        display="rev/min",
-        variability="discrete",
-        nominal=100.0,
-        depends=(),
+    torque_speed_limit: float = found_once(
+        "rad/s", "Shaft speed up to which the spring is strong enough", display="rev/min", nominal=100.0
     )
-    release_speed_limit: float = output(
-        "rad/s",
-        "Shaft speed up to which the pawl changes over in time",
-        display="rev/min",
-        variability="discrete",
-        nominal=100.0,
-        depends=(),
+    release_speed_limit: float = found_once(
+        "rad/s", "Shaft speed up to which the pawl changes over in time", display="rev/min", nominal=100.0
     )
-    speed_limit: float = output(
-        "rad/s",
-        "The lower of the two speed limits",
-        display="rev/min",
-        variability="discrete",
-        nominal=100.0,
-        depends=(),
+    speed_limit: float = found_once(
+        "rad/s", "The lower of the two speed limits", display="rev/min", nominal=100.0
     )
     friction_power: float = output(
         "W",

@@ -19,6 +19,7 @@ from ..physics.reed import (
 )
 from ..physics.shaft import too_far
 from .shaft_driven import TOO_FAR, ShaftDriven
+from .shared_declarations import found_once, link_length, link_place
 
 
 @dataclass(slots=True)
@@ -48,75 +49,28 @@ class ReedBeatUp(ShaftDriven):
         TOO_FAR,
     )
 
-    crank_length: float = parameter(
-        "m", 0.065168, "Length of the crank", display="mm", minimum=1e-4, maximum=10.0, nominal=0.1
+    crank_length: float = link_length(0.065168, "Length of the crank")
+    coupler_length: float = link_length(0.146334, "Length of the coupler between crank and rocker")
+    rocker_length: float = link_length(0.550, "Length of the rocker from its pivot to the coupler")
+    crank_x: float = link_place(
+        -0.207977, "Position of the crank's centre from the rocker's pivot, towards the fell (identified)"
     )
-    coupler_length: float = parameter(
-        "m",
-        0.146334,
-        "Length of the coupler between crank and rocker",
-        display="mm",
-        minimum=1e-4,
-        maximum=10.0,
-        nominal=0.1,
-    )
-    rocker_length: float = parameter(
-        "m",
-        0.550,
-        "Length of the rocker from its pivot to the coupler",
-        display="mm",
-        minimum=1e-4,
-        maximum=10.0,
-        nominal=0.1,
-    )
-    crank_x: float = parameter(
-        "m",
-        -0.207977,
-        "Position of the crank's centre from the rocker's pivot, towards the fell (identified)",
-        display="mm",
-        minimum=-10.0,
-        maximum=10.0,
-    )
-    crank_y: float = parameter(
-        "m",
-        0.525749,
-        "Position of the crank's centre from the rocker's pivot, upwards (identified)",
-        display="mm",
-        minimum=-10.0,
-        maximum=10.0,
+    crank_y: float = link_place(
+        0.525749, "Position of the crank's centre from the rocker's pivot, upwards (identified)"
     )
     assembly: int = parameter("1", -1, "Assembly mode of the four-bar: 1 or -1", minimum=-1, maximum=1)
     crank_direction: int = parameter(
         "1", 1, "Direction in which the crank turns: 1 from x to y, or -1 (assumed)", minimum=-1, maximum=1
     )
-    arm_length: float = parameter(
-        "m",
-        0.67984,
-        "Length of the rocker's arm from its pivot to the reed's rod (identified)",
-        display="mm",
-        minimum=1e-4,
-        maximum=10.0,
-        nominal=0.1,
+    arm_length: float = link_length(
+        0.67984, "Length of the rocker's arm from its pivot to the reed's rod (identified)"
     )
     arm_angle: float = parameter(
         "rad", 0.0, "Angle from the rocker to its arm", display="deg", minimum=-7.0, maximum=7.0
     )
-    rod_length: float = parameter(
-        "m",
-        0.48748,
-        "Length of the rod that drives the reed (identified)",
-        display="mm",
-        minimum=1e-4,
-        maximum=10.0,
-        nominal=0.1,
-    )
-    reed_height: float = parameter(
-        "m",
-        0.66933,
-        "Height of the reed's line above the rocker's pivot (identified)",
-        display="mm",
-        minimum=-10.0,
-        maximum=10.0,
+    rod_length: float = link_length(0.48748, "Length of the rod that drives the reed (identified)")
+    reed_height: float = link_place(
+        0.66933, "Height of the reed's line above the rocker's pivot (identified)"
     )
     beat_up_angle: float = parameter(
         "rad",
@@ -164,41 +118,17 @@ class ReedBeatUp(ShaftDriven):
     velocity: float = output("m/s", "Velocity of the reed", rate="acceleration")
     acceleration: float = output("m/s2", "Acceleration of the reed", nominal=100.0)
     transmission_angle: float = output(
-        "rad",
-        "Transmission angle of the crank-rocker; 90 deg is best",
-        display="deg",
-        nominal=1.5,
+        "rad", "Transmission angle of the crank-rocker; 90 deg is best", display="deg", nominal=1.5
     )
-    smallest_transmission_angle: float = output(
-        "rad",
-        "Smallest transmission angle in a revolution",
-        display="deg",
-        variability="discrete",
-        nominal=1.5,
-        depends=(),
+    smallest_transmission_angle: float = found_once(
+        "rad", "Smallest transmission angle in a revolution", display="deg", nominal=1.5
     )
     pressure_angle: float = output(
         "rad", "Pressure angle of the reed's rod: its slope against the reed's line", display="deg"
     )
-    front_limit: float = output(
-        "m", "Reed coordinate at the beat-up", display="mm", variability="discrete", nominal=0.1, depends=()
-    )
-    back_limit: float = output(
-        "m",
-        "Reed coordinate at the back dead centre",
-        display="mm",
-        variability="discrete",
-        nominal=0.1,
-        depends=(),
-    )
-    stroke: float = output(
-        "m",
-        "Travel of the reed between its limits",
-        display="mm",
-        variability="discrete",
-        nominal=0.1,
-        depends=(),
-    )
+    front_limit: float = found_once("m", "Reed coordinate at the beat-up", display="mm", nominal=0.1)
+    back_limit: float = found_once("m", "Reed coordinate at the back dead centre", display="mm", nominal=0.1)
+    stroke: float = found_once("m", "Travel of the reed between its limits", display="mm", nominal=0.1)
     shaft_torque: float = output(
         "N.m", "Torque the shaft needs to drive the moving masses; 0 with a servo", nominal=10.0
     )

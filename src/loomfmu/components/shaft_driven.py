@@ -6,6 +6,7 @@ from typing import ClassVar
 from ..declaring.declarations import at_step_end, input_, parameter
 from ..declaring.variables import Component, Problem, Terminal
 from ..physics.shaft import carried
+from .shared_declarations import shaft_speed, shaft_start
 from .terminals import SHAFT
 
 
@@ -28,24 +29,9 @@ class ShaftDriven(Component):
         SHAFT.of("shaft_angle", "shaft_velocity", "shaft_acceleration"),
     )
 
-    speed: float = parameter(
-        "rad/s",
-        41.88790204786391,
-        "Constant shaft speed, used if follow_shaft is false",
-        display="rev/min",
-        minimum=-1000.0,
-        maximum=1000.0,
-        nominal=50.0,
-        unless="follow_shaft",
-    )
-    start_angle: float = parameter(
-        "rad",
-        0.0,
-        "Shaft angle at time 0, used if follow_shaft is false",
-        display="deg",
-        minimum=-1e6,
-        maximum=1e6,
-        unless="follow_shaft",
+    speed: float = shaft_speed("Constant shaft speed, used if follow_shaft is false", unless="follow_shaft")
+    start_angle: float = shaft_start(
+        "Shaft angle at time 0, used if follow_shaft is false", unless="follow_shaft"
     )
     follow_shaft: bool = parameter(
         "1", False, "Follow shaft_angle, shaft_velocity and shaft_acceleration instead of turning at speed"

@@ -14,6 +14,15 @@ ROTOR = Terminal(
     "Motion of the dobby's rotor, and the lift it gives a frame",
     ("angle", "velocity", "acceleration", "lift_fraction", "lift_rate", "lift_acceleration"),
 )
+# the variables that carry it, at both of its ends
+OF_ROTOR = (
+    "rotor_angle",
+    "rotor_velocity",
+    "rotor_acceleration",
+    "lift_fraction",
+    "lift_rate",
+    "lift_acceleration",
+)
 FRAME = Terminal("frame", "Motion of a heald frame", ("lift", "velocity", "acceleration"))
 # a frame in a frame: fits what a frame lifts
 CARRIER = replace(FRAME, name="carrier.frame", description="Motion of the heald carrier in its frame")

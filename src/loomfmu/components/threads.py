@@ -11,12 +11,7 @@ class Threads(Component):
     """Number, lengths and constants of the threads that one frame lifts."""
 
     thread_count: int = parameter(
-        "1",
-        1260,
-        "Number of threads in the frame",
-        minimum=1,
-        maximum=1000000,
-        source="warp_#.thread_count",
+        "1", 1260, "Number of threads in the frame", minimum=1, maximum=1000000, source="warp_#.thread_count"
     )
     stroke: float = parameter(
         "m",

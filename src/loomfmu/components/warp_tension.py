@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from math import inf
 from typing import ClassVar
 
-from ..declaring.declarations import at_step_end, input_, output, state
+from ..declaring.declarations import at_step_end, output, state
 from ..declaring.variables import MIXED, Terminal
 from ..physics.numerics.motion import joined, joined_area
 from ..physics.shaft import carried
@@ -18,6 +18,7 @@ from ..physics.warp import (
     turns_once,
 )
 from ..physics.warp_energy import thread_energy, thread_power
+from .shared_declarations import frame_acceleration, frame_lift, frame_velocity
 from .terminals import FRAME
 from .threads import Threads
 
@@ -68,15 +69,9 @@ class WarpTension(Threads):
     longest_turn: ClassVar[float] = inf
 
     inputs_at_step_end: bool = at_step_end()
-    lift: float = input_(
-        "m", 0.098, "Lift of the frame", display="mm", nominal=0.1, rate="velocity", minimum=-1e3, maximum=1e3
-    )
-    velocity: float = input_(
-        "m/s", 0.0, "Velocity of the frame", rate="acceleration", minimum=-1e9, maximum=1e9
-    )
-    acceleration: float = input_(
-        "m/s2", 0.0, "Acceleration of the frame", nominal=10.0, minimum=-1e15, maximum=1e15
-    )
+    lift: float = frame_lift(0.098)
+    velocity: float = frame_velocity()
+    acceleration: float = frame_acceleration(0.0)
     extension: float = output("m", "Extension of a thread by the shed", display="mm", nominal=0.01)
     tension: float = output("N", "Tension of a thread", display="cN", nominal=0.5)
     highest_tension: float = output(
@@ -102,7 +97,7 @@ class WarpTension(Threads):
     frame_work: float = output(
         "J", "Work that has stretched all threads so far: that of frame_load, reversed", nominal=10.0
     )
-    slack: bool = output("1", "The thread is slack", start=False, variability="discrete")
+    slack: bool = output("1", "The thread is slack", start=False)
     elapsed: float = state("s", "Time covered by the extremes and the mean", minimum=0.0)
     pending: float = state("s", "Time from the last sample of the inputs to the next", minimum=0.0)
     sampled_extension: float = state("m", "Extension at the last sample")

@@ -9,6 +9,7 @@ from ..declaring.variables import MIXED, NOTHING, Problem, Terminal
 from ..physics.linkage import four_bar_margin, spherical_margin, spherical_rocker, weft_motion, wrapped
 from ..physics.shaft import too_far
 from .shaft_driven import TOO_FAR, ShaftDriven
+from .shared_declarations import found_once, link_length, link_place
 from .terminals import HEAD
 
 FARTHEST_PHASE = pi / 3.0 + 1e-9  # of the crank from a dead centre that it is sure to belong to
@@ -85,21 +86,11 @@ class WeftInsertion(ShaftDriven):
         maximum=7.0,
     )
     planar_linkage: bool = parameter("1", True, "A planar four-bar C-D-K-G follows the rocker")
-    crank_length: float = parameter(
-        "m", 0.150, "Length DC", display="mm", minimum=1e-4, maximum=10.0, nominal=0.1
-    )
-    coupler_length: float = parameter(
-        "m", 0.245, "Length DK", display="mm", minimum=1e-4, maximum=10.0, nominal=0.1
-    )
-    output_length: float = parameter(
-        "m", 0.121, "Length KG", display="mm", minimum=1e-4, maximum=10.0, nominal=0.1
-    )
-    pivot_x: float = parameter(
-        "m", 0.243, "Position of G from C, x (identified)", display="mm", minimum=-10.0, maximum=10.0
-    )
-    pivot_y: float = parameter(
-        "m", 0.258, "Position of G from C, y (identified)", display="mm", minimum=-10.0, maximum=10.0
-    )
+    crank_length: float = link_length(0.150, "Length DC")
+    coupler_length: float = link_length(0.245, "Length DK")
+    output_length: float = link_length(0.121, "Length KG")
+    pivot_x: float = link_place(0.243, "Position of G from C, x (identified)")
+    pivot_y: float = link_place(0.258, "Position of G from C, y (identified)")
     assembly: int = parameter(
         "1", 1, "Assembly mode of the four-bar: 1 or -1 (identified)", minimum=-1, maximum=1
     )
@@ -148,9 +139,7 @@ class WeftInsertion(ShaftDriven):
     )
     velocity: float = output("m/s", "Velocity of the rapier head", nominal=10.0, rate="acceleration")
     acceleration: float = output("m/s2", "Acceleration of the rapier head", nominal=1000.0)
-    stroke: float = output(
-        "m", "Travel at the inner dead centre, half a turn on", variability="discrete", depends=()
-    )
+    stroke: float = found_once("m", "Travel at the inner dead centre, half a turn on")
     shaft_torque: float = output("N.m", "Torque the shaft needs to drive the moving masses", nominal=10.0)
     kinetic_energy: float = output("J", "Kinetic energy of head, belt and wheel", nominal=10.0)
     shaft_work: float = output("J", "Work taken from the shaft, now kinetic_energy", nominal=10.0)

@@ -69,7 +69,7 @@ class WeftTransfer(Component):
         rate="offset_velocity",
     )
     offset_velocity: float = output("m/s", "Rate of offset")
-    engaged: bool = output("1", "The overlap is at least needed_overlap", start=False, variability="discrete")
+    engaged: bool = output("1", "The overlap is at least needed_overlap", start=False)
     engaged_event: float = indicator("m", "Passes zero where the hand-over begins or ends")
 
     def initialize(self, time: float) -> int:

@@ -165,16 +165,10 @@ class WeftVariables(ShaftDriven):
         valid_if=FOLLOWED,
         so_far=True,
     )
-    slack: bool = output(
-        "1", "The weft is carried without tension", start=False, variability="discrete", valid_if=FOLLOWED
-    )
-    carried: bool = output("1", "A head carries the weft", start=False, variability="discrete")
+    slack: bool = output("1", "The weft is carried without tension", start=False, valid_if=FOLLOWED)
+    carried: bool = output("1", "A head carries the weft", start=False)
     followed: bool = output(
-        "1",
-        "The shaft never turned back while a head carried the weft",
-        start=True,
-        variability="discrete",
-        so_far=True,
+        "1", "The shaft never turned back while a head carried the weft", start=True, so_far=True
     )
     length: float = output(
         "m", "Length of yarn from the brake to the head that carries it", valid_if=FOLLOWED
@@ -210,10 +204,6 @@ class WeftVariables(ShaftDriven):
     sampled_speed: float = state("rad/s", "Shaft velocity at the last sample")
     sampled_change: float = state("rad/s2", "Shaft acceleration at the last sample")
     turning: int = state(
-        "1",
-        "Direction of the shaft, 1 or -1; 0 before it first turns",
-        start=0,
-        minimum=-1,
-        maximum=1,
+        "1", "Direction of the shaft, 1 or -1; 0 before it first turns", start=0, minimum=-1, maximum=1
     )
     acceleration_rate: float = state("m/s3", "Rate of the acceleration between the last two samples")

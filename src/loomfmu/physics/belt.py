@@ -157,12 +157,7 @@ def weft_load(tension: float, velocity: float, taker: bool) -> float:
 
 
 def speed_limit(
-    free_length: float,
-    slope: float,
-    factor: float,
-    stiffness: float,
-    mass: float,
-    tension: float,
+    free_length: float, slope: float, factor: float, stiffness: float, mass: float, tension: float
 ) -> float:
     """Shaft speed at which the belt would just buckle at this angle, equations (9) and (12).
 

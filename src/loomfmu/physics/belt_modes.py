@@ -141,18 +141,7 @@ def harmonics(
     s3 = s2 * c1 + c2 * s1
     c4 = c2 * c2 - s2 * s2
     s4 = 2.0 * c2 * s2
-    return (
-        c2,
-        c3,
-        c4,
-        c3 * c2 - s3 * s2,
-        c3 * c3 - s3 * s3,
-        s2,
-        s3,
-        s4,
-        s3 * c2 + c3 * s2,
-        2.0 * c3 * s3,
-    )
+    return (c2, c3, c4, c3 * c2 - s3 * s2, c3 * c3 - s3 * s3, s2, s3, s4, s3 * c2 + c3 * s2, 2.0 * c3 * s3)
 
 
 def bow_mode(number: int, bow: Bow, length: float, cosine: float, sine: float) -> tuple[float, float, float]:

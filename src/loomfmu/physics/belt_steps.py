@@ -66,13 +66,7 @@ def stages_of(belt: Belt, path: Path, share: float, taken: float) -> Stages:
 
 
 def foresee(
-    belt: Belt,
-    at: Instant,
-    contact: int,
-    longer: float,
-    q: list[float],
-    v: list[float],
-    a: list[float],
+    belt: Belt, at: Instant, contact: int, longer: float, q: list[float], v: list[float], a: list[float]
 ) -> list[float]:
     """First accelerations of the stages: by those of the last step, so much shorter, or those now if 0."""
     if longer > 0.0:

@@ -13,13 +13,7 @@ from .linkage import closed_acos
 
 
 def dead_centre(
-    crank: float,
-    coupler: float,
-    rocker: float,
-    pivot_x: float,
-    pivot_y: float,
-    assembly: int,
-    extended: bool,
+    crank: float, coupler: float, rocker: float, pivot_x: float, pivot_y: float, assembly: int, extended: bool
 ) -> float:
     """Crank angle at which crank and coupler are in line, so that the rocker is at an end of its swing.
 

@@ -133,14 +133,7 @@ def fading(decay: float) -> tuple[float, float, float, float, float, float, floa
 
 
 def thread_drive(
-    stiffness: float,
-    creep: float,
-    start: float,
-    end: float,
-    a0: float,
-    a1: float,
-    a2: float,
-    a3: float,
+    stiffness: float, creep: float, start: float, end: float, a0: float, a1: float, a2: float, a3: float
 ) -> list[float]:
     """Right side of the law over a step, `b (x' + n x)`, as a polynomial in the share u of the step.
 

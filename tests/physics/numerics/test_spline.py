@@ -1,5 +1,6 @@
 """A piece of a cubic spline: against polynomials of scipy, and what is found on it."""
 
+from dataclasses import astuple
 from itertools import pairwise
 
 import numpy as np
@@ -8,14 +9,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.interpolate import PPoly
 
-from loomfmu.physics.numerics.spline import cubic_piece, slope_extremes, stretch_above, turning_points
+from loomfmu.physics.numerics.spline import Cubic, cubic_piece, slope_extremes, stretch_above, turning_points
 
 unit = st.integers(-1000, 1000).map(lambda thousandths: thousandths / 1000)
-pieces = st.tuples(st.floats(0.1, 10.0), unit, unit, unit, unit)
+pieces = st.builds(Cubic, st.floats(0.1, 10.0), unit, unit, unit, unit)
 
 
-def polynomial(length, left, right, left_bend, right_bend):
+def polynomial(piece):
     """The piece in powers of the distance from its left knot, with 0 beyond the ends left out."""
+    length, left, right, left_bend, right_bend = astuple(piece)
     third = (right_bend - left_bend) / length
     slope = (right - left) / length - length * (2.0 * left_bend + right_bend) / 6.0
     return PPoly([[third / 6.0], [0.5 * left_bend], [slope], [left]], [0.0, length], extrapolate=False)
@@ -23,17 +25,17 @@ def polynomial(length, left, right, left_bend, right_bend):
 
 @given(pieces, st.floats(0.0, 1.0))
 def test_pieces_are_cubics(piece, share):
-    place = share * piece[0]
-    exact = polynomial(*piece)
+    place = share * piece.length
+    exact = polynomial(piece)
     # rounding of terms up to length^2: 100
-    for order, found in enumerate(cubic_piece(place, *piece)):
+    for order, found in enumerate(cubic_piece(piece, place)):
         assert found == pytest.approx(float(exact(place, order)), abs=1e-13)
 
 
 @given(pieces)
 def test_pieces_meet_their_knots(piece):
-    length, left, right, left_bend, right_bend = piece
-    start, end = cubic_piece(0.0, *piece), cubic_piece(length, *piece)
+    length, left, right, left_bend, right_bend = astuple(piece)
+    start, end = cubic_piece(piece, 0.0), cubic_piece(piece, length)
     # one or two roundings
     assert (start[0], end[0]) == pytest.approx((left, right), abs=1e-15)
     assert (start[2], end[2]) == pytest.approx((left_bend, right_bend), abs=1e-15)
@@ -41,46 +43,46 @@ def test_pieces_meet_their_knots(piece):
 
 @given(pieces, st.floats(0.0, 1.0))
 def test_slopes_lie_between_their_extremes(piece, share):
-    lowest, highest = slope_extremes(*piece)
-    slope = cubic_piece(share * piece[0], *piece)[1]
+    lowest, highest = slope_extremes(piece)
+    slope = cubic_piece(piece, share * piece.length)[1]
     assert lowest - 1e-14 <= slope <= highest + 1e-14  # rounding of terms up to 10
-    ends = [cubic_piece(place, *piece)[1] for place in (0.0, piece[0])]
-    exact = polynomial(*piece)
-    crests = [float(exact(x, 1)) for x in exact.derivative(2).roots() if 0.0 < x < piece[0]]
+    ends = [cubic_piece(piece, place)[1] for place in (0.0, piece.length)]
+    exact = polynomial(piece)
+    crests = [float(exact(x, 1)) for x in exact.derivative(2).roots() if 0.0 < x < piece.length]
     assert (lowest, highest) == pytest.approx((min(ends + crests), max(ends + crests)), abs=1e-13)  # rounding
 
 
 @given(pieces)
 def test_turning_points_are_in_order_and_none_is_missed(piece):
-    length = piece[0]
-    first, second = turning_points(*piece)
+    length = piece.length
+    first, second = turning_points(piece)
     assert 0.0 <= first <= second <= length
     for low, high in ((0.0, first), (first, second), (second, length)):
         # between them it rises or falls throughout; 1e-12: rounding of terms up to 100
-        steps = np.diff([cubic_piece(x, *piece)[0] for x in np.linspace(low, high, 50)])
+        steps = np.diff([cubic_piece(piece, x)[0] for x in np.linspace(low, high, 50)])
         assert np.all(steps >= -1e-12) or np.all(steps <= 1e-12)
 
 
 @given(pieces, st.floats(-2.0, 2.0))
 def test_stretch_above_a_level(piece, level):
-    length = piece[0]
-    exact = polynomial(*piece)
+    length = piece.length
+    exact = polynomial(piece)
     cuts = [float(x) for x in exact.solve(level, extrapolate=False) if 0.0 < x < length]
     edges = [0.0, *sorted(cuts), length]
     above = sum(high - low for low, high in pairwise(edges) if exact(0.5 * (low + high)) >= level)
     # a crossing is known to 1e-14 over the slope there, and where the piece but touches the level, to the
     # square root of that: 1e-6 holds both
-    assert stretch_above(level, *piece) == pytest.approx(above, abs=1e-6)
+    assert stretch_above(piece, level) == pytest.approx(above, abs=1e-6)
 
 
 def test_stretch_above_is_found_to_rounding():
-    # x^3 from -1 to 1 lies above 0.001 from 0.1 on
-    assert stretch_above(1e-3, 2.0, -1.0, 1.0, -6.0, 6.0) == pytest.approx(0.9, abs=1e-14)  # 1e-16 over 0.03
-    assert stretch_above(-1.0, 2.0, -1.0, 1.0, -6.0, 6.0) == 2.0
-    assert stretch_above(1.5, 2.0, -1.0, 1.0, -6.0, 6.0) == 0.0
+    third_power = Cubic(2.0, -1.0, 1.0, -6.0, 6.0)  # from -1 to 1: above 0.001 from 0.1 on
+    assert stretch_above(third_power, 1e-3) == pytest.approx(0.9, abs=1e-14)  # 1e-16 over 0.03
+    assert stretch_above(third_power, -1.0) == 2.0
+    assert stretch_above(third_power, 1.5) == 0.0
 
 
 def test_a_straight_piece_has_no_turning_point():
-    assert turning_points(2.0, 0.0, 1.0, 0.0, 0.0) == (0.0, 2.0)
-    assert slope_extremes(2.0, 0.0, 1.0, 0.0, 0.0) == (0.5, 0.5)
-    assert stretch_above(0.25, 2.0, 0.0, 1.0, 0.0, 0.0) == 1.5
+    assert turning_points(Cubic(2.0, 0.0, 1.0, 0.0, 0.0)) == (0.0, 2.0)
+    assert slope_extremes(Cubic(2.0, 0.0, 1.0, 0.0, 0.0)) == (0.5, 0.5)
+    assert stretch_above(Cubic(2.0, 0.0, 1.0, 0.0, 0.0), 0.25) == 1.5

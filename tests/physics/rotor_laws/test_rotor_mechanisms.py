@@ -5,7 +5,7 @@ from math import pi
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import given
 from hypothesis import strategies as st
 from reference import MP
 
@@ -67,18 +67,6 @@ def test_levers_have_the_speed_of_1_12(r, b, e):
         assert abs(found[1] - value) < 1e-13
         assert abs(found[2] - first) < 1e-12
         assert abs(found[3] - 2 * second) < 2e-11
-
-
-def test_printed_1_12_does_not_close():
-    # the arc tangent of the ratio stays within a quarter turn: the lever's second half repeats the first
-    r, b, e = MP.mpf("0.1"), MP.mpf("0.1"), MP.mpf("0.04")
-    turn = {}
-    for name, angle in (("meant", MP.atan2), ("printed", lambda y, x: MP.atan(y / x))):
-        jumps = MP.acos(e / r)  # where the denominator is 0
-        pieces = [-MP.pi, -jumps, jumps, MP.pi]
-        turn[name] = MP.quad(lambda a, angle=angle: speed_1_12(a, r, b, e, angle), pieces)
-    assert turn["meant"] == pytest.approx(2 * pi, abs=1e-14)  # rounding of 2 pi
-    assert turn["printed"] == pytest.approx(7.8052, abs=1e-4)  # rad: as printed, 1.24 turns
 
 
 @given(radius, radius, share, any_angle)
@@ -143,19 +131,6 @@ def test_gears_are_those_of_1_13(harmonics):
             assert abs(noncircular_gears(x, *harmonics)[order] - factorial * taylor[order]) < 1e-14
 
 
-def test_printed_1_14_is_not_the_rate_of_1_13():
-    harmonics = GEARS[0]
-
-    def printed(x):  # with the factor 1/k
-        return 1 + sum(a / k * MP.cos(k * x) for k, a in enumerate(harmonics, start=1))
-
-    travelled = MP.quad(printed, [0, MP.pi / 2])
-    assert noncircular_gears(pi / 2, *harmonics)[0] - travelled == pytest.approx(0.011, abs=5e-4)
-    # nor is (1.15), which the code has, the rate of it: at a quarter turn -(a1 - 3 a3), by (1.14) -(a1 - a3)
-    assert noncircular_gears(pi / 2, *harmonics)[2] == pytest.approx(0.12, abs=1e-15)  # rounding
-    assert MP.diff(printed, MP.pi / 2) == pytest.approx(0.22, abs=1e-15)
-
-
 @given(harmonic, harmonic, harmonic, harmonic, any_angle)
 def test_gears_close_and_are_symmetric(a1, a2, a3, a4, x):
     here = np.array(noncircular_gears(x, a1, a2, a3, a4))
@@ -175,22 +150,6 @@ def test_no_minimum_of_the_gears_speed_is_missed(a1, a2, a3, a4):
     # roots good to 1e-7 at worst, two that fall together, where the speed is flat; and rounding
     assert lowest == pytest.approx(speeds.min(), abs=1e-13)
     assert highest == pytest.approx(speeds.max(), abs=1e-13)
-
-
-@given(harmonic, harmonic, harmonic, harmonic, any_angle)
-def test_gears_speed_stays_between_its_extremes(a1, a2, a3, a4, x):
-    lowest, highest = gear_speed_extremes(a1, a2, a3, a4)
-    speed = noncircular_gears(x, a1, a2, a3, a4)[1]
-    assert lowest - 1e-14 <= speed <= highest + 1e-14  # rounding of five terms
-
-
-@given(harmonic, harmonic, harmonic, harmonic, any_angle, any_angle)
-def test_gears_that_keep_above_standstill_never_turn_back(a1, a2, a3, a4, one, other):
-    lowest, _highest = gear_speed_extremes(a1, a2, a3, a4)
-    assume(lowest > 0.0)
-    low, high = min(one, other), max(one, other)
-    reached = [noncircular_gears(x, a1, a2, a3, a4)[0] for x in (low, high)]
-    assert reached[1] - reached[0] >= lowest * (high - low) - 1e-14  # rounding of angles up to 10
 
 
 # Peaks of the modulator's laws

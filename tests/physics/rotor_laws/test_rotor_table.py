@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from loomfmu.physics.numerics.spline import cubic_piece
+from loomfmu.physics.numerics.spline import Cubic, cubic_piece
 from loomfmu.physics.rotor_laws.table import bend_weight
 
 every_size = pytest.mark.parametrize("points", range(4, 37))
@@ -39,9 +39,9 @@ def test_spline_is_that_of_scipy(points):
     ]
     for k in range(points):
         for share in (0.0, 0.3, 0.9):
-            found = cubic_piece(
-                share * step, step, values[k], values[(k + 1) % points], bends[k], bends[(k + 1) % points]
-            )
+            after = (k + 1) % points
+            piece = Cubic(step, values[k], values[after], bends[k], bends[after])
+            found = cubic_piece(piece, share * step)
             for order in range(4):
                 # rounding of values up to 1, divided by the step once for each derivative
                 exact = spline(knots[k] + share * step, order)

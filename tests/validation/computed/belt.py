@@ -15,7 +15,6 @@ LOOM = "WL680-3600"
 HEAD = "G6300 left"
 CASE_HEADS = dict(zip(("I", "II", "III", "IV"), HEADS, strict=True))
 MASS = {case: float(HEADS[head]["mass_g"]) * 1e-3 for case, head in CASE_HEADS.items()}
-FACTORS = (0.8, 0.9, 1.0)
 
 
 @cache

@@ -20,7 +20,8 @@ from ...physics.rotor_laws.rotor import highest_rates
 from ...physics.rotor_laws.shed_cam import SPLINE_CAM, cam_phase
 from ...physics.rotor_laws.table import TABLE
 from ...physics.shaft import too_far
-from ..terminals import ROTOR
+from ..shared_declarations import found_once
+from ..terminals import OF_ROTOR, ROTOR
 from .laws import RotorLaws
 
 
@@ -35,17 +36,7 @@ class DobbyDrive(RotorLaws):
     keeps: ClassVar[str] = NOTHING
     origin: ClassVar[str] = MIXED
     longest_turn: ClassVar[float] = inf
-    terminals: ClassVar[tuple[Terminal, ...]] = (
-        *RotorLaws.terminals,
-        ROTOR.of(
-            "rotor_angle",
-            "rotor_velocity",
-            "rotor_acceleration",
-            "lift_fraction",
-            "lift_rate",
-            "lift_acceleration",
-        ),
-    )
+    terminals: ClassVar[tuple[Terminal, ...]] = (*RotorLaws.terminals, ROTOR.of(*OF_ROTOR))
 
     rotor_inertia: float = parameter(
         "kg.m2",
@@ -81,41 +72,28 @@ class DobbyDrive(RotorLaws):
     )
     kinetic_energy: float = output("J", "Kinetic energy of the rotor", nominal=10.0)
     shaft_work: float = output("J", "Work taken from the shaft, now kinetic_energy", nominal=10.0)
-    dwell_angle: float = output(
+    dwell_angle: float = found_once(
         "rad",
         "Shaft angle for which a changing frame stays within dwell_tolerance of its end",
         display="deg",
-        variability="discrete",
         nominal=1.5,
-        depends=(),
     )
-    clear_shed_angle: float = output(
+    clear_shed_angle: float = found_once(
         "rad",
         "Shaft angle for which a changing frame stays within clear_fraction of its end",
         display="deg",
-        variability="discrete",
         nominal=1.5,
-        depends=(),
     )
-    highest_speed: float = output(
-        "1",
-        "Largest rotor speed relative to the shaft's; for spline_cam, largest slope of lift_fraction",
-        variability="discrete",
-        depends=(),
+    highest_speed: float = found_once(
+        "1", "Largest rotor speed relative to the shaft's; for spline_cam, largest slope of lift_fraction"
     )
-    highest_acceleration: float = output(
-        "1",
-        "Largest rotor acceleration at a shaft speed of 1 rad/s; for spline_cam, that of lift_fraction",
-        variability="discrete",
-        depends=(),
+    highest_acceleration: float = found_once(
+        "1", "Largest rotor acceleration at a shaft speed of 1 rad/s; for spline_cam, that of lift_fraction"
     )
-    highest_jerk: float = output(
-        "1",
-        "Largest rotor jerk at a shaft speed of 1 rad/s; for spline_cam, that of lift_fraction",
-        variability="discrete",
-        depends=(),
+    highest_jerk: float = found_once(
+        "1", "Largest rotor jerk at a shaft speed of 1 rad/s; for spline_cam, that of lift_fraction"
     )
-    pick: int = output("1", "Current pick of the shaft", start=0, variability="discrete")
+    pick: int = output("1", "Current pick of the shaft", start=0)
     pick_event: float = indicator("1", "Passes zero where pick changes")
 
     def initialize(self, time: float) -> int:

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 from ...declaring.variables import Problem
 from ...physics.numerics.brackets import nearer_root
-from ...physics.numerics.spline import cubic_piece, slope_extremes, stretch_above, turning_points
+from ...physics.numerics.spline import Cubic, cubic_piece, slope_extremes, stretch_above, turning_points
 from ...physics.rotor_laws.mechanisms import (
     NONCIRCULAR_GEARS,
     SLOTTED_LEVERS,
@@ -114,13 +114,8 @@ class RotorLaws(LawParameters):
         self.cam_span = 0.0
         for index in range(5):
             self.load(index)
-            first, second = turning_points(
-                self.segment_length,
-                self.segment_left,
-                self.segment_right,
-                self.segment_left_bend,
-                self.segment_right_bend,
-            )
+            segment = self.cubic()
+            first, second = turning_points(segment)
             for place in range(3):
                 distance = self.segment_length
                 if place == 0:
@@ -171,16 +166,20 @@ class RotorLaws(LawParameters):
                 self.segment_right_bend = self.table_bend(index + 1)
             self.segment = index
 
-    def piece(self, distance: float) -> tuple[float, float, float, float]:
-        """Value and derivatives of the spline at a distance from the start of the present segment."""
-        return cubic_piece(
-            distance,
+    def cubic(self) -> Cubic:
+        """The present segment of the spline."""
+        return Cubic(
             self.segment_length,
             self.segment_left,
             self.segment_right,
             self.segment_left_bend,
             self.segment_right_bend,
         )
+
+    def piece(self, distance: float) -> tuple[float, float, float, float]:
+        """Value and derivatives of the spline at a distance from the start of the present segment."""
+        segment = self.cubic()
+        return cubic_piece(segment, distance)
 
     def spline_peaks(self) -> tuple[float, float, float, float]:
         """Lowest and highest slope of the spline, its largest second and third derivative."""
@@ -191,13 +190,8 @@ class RotorLaws(LawParameters):
         segments = self.table_points if self.law == TABLE else 5
         for index in range(segments):
             self.load(index)
-            low, high = slope_extremes(
-                self.segment_length,
-                self.segment_left,
-                self.segment_right,
-                self.segment_left_bend,
-                self.segment_right_bend,
-            )
+            segment = self.cubic()
+            low, high = slope_extremes(segment)
             lowest = low if low < lowest else lowest
             highest = high if high > highest else highest
             for end in range(2):
@@ -255,14 +249,8 @@ class RotorLaws(LawParameters):
         total = 0.0
         for index in range(5):
             self.load(index)
-            total = total + stretch_above(
-                level,
-                self.segment_length,
-                self.segment_left,
-                self.segment_right,
-                self.segment_left_bend,
-                self.segment_right_bend,
-            )
+            segment = self.cubic()
+            total = total + stretch_above(segment, level)
         return total
 
     def place_of(self, angle: float) -> float:

@@ -1,6 +1,6 @@
 """Extremes of a signal between its samples, so that no step decides what is seen of them."""
 
-from .motion import joined, joined_value, turns_of_cubic
+from .motion import joined, joined_rate, joined_value, turns_of_cubic
 
 HALVINGS = 50  # of a share of a step: then it is known to rounding
 
@@ -103,12 +103,12 @@ def lowest_by_two_rates(
     low = 0.0
     for eighth in range(8):
         high = 0.125 * (eighth + 1)
-        if slope(rate, a0, a1, a2, a3, low) < 0.0 and slope(rate, a0, a1, a2, a3, high) >= 0.0:
+        if joined_rate(rate, a0, a1, a2, a3, low) < 0.0 and joined_rate(rate, a0, a1, a2, a3, high) >= 0.0:
             left = low
             right = high
             for _ in range(HALVINGS):
                 middle = 0.5 * (left + right)
-                if slope(rate, a0, a1, a2, a3, middle) < 0.0:
+                if joined_rate(rate, a0, a1, a2, a3, middle) < 0.0:
                     left = middle
                 else:
                     right = middle
@@ -137,13 +137,3 @@ def highest_by_two_rates(
     return -lowest_by_two_rates(
         -highest, step, -start, -start_rate, -start_second, -end, -end_rate, -end_second
     )
-
-
-def slope(rate: float, a0: float, a1: float, a2: float, a3: float, share: float) -> float:
-    """Rate at a share of the way, from that at its start and the coefficients of `joined`.
-
-    >>> slope(1.0, 2.0, 0.0, 0.0, 0.0, 0.5)
-    2.0
-    """
-    u = share
-    return rate + u * (a0 + u * (a1 / 2.0 + u * (a2 / 3.0 + u * a3 / 4.0)))

@@ -10,12 +10,7 @@ PLACE_ROUNDING = 4.5e-16
 
 
 def bumps(
-    start: float,
-    start_rate: float,
-    start_second: float,
-    end: float,
-    end_rate: float,
-    end_second: float,
+    start: float, start_rate: float, start_second: float, end: float, end_rate: float, end_second: float
 ) -> tuple[float, float]:
     """Two bumps of the second derivative between two samples, above the line between its ends.
 
@@ -61,12 +56,7 @@ def bent(
 
 
 def joined(
-    start: float,
-    start_rate: float,
-    start_second: float,
-    end: float,
-    end_rate: float,
-    end_second: float,
+    start: float, start_rate: float, start_second: float, end: float, end_rate: float, end_second: float
 ) -> tuple[float, float, float, float]:
     """Second derivative of the quintic that joins two samples, as a cubic in the share u of the step.
 
@@ -151,13 +141,7 @@ def expected_bump(before: float, step_before: float, by_rate: float, step: float
 
 
 def joined_value(
-    start: float,
-    start_rate: float,
-    a0: float,
-    a1: float,
-    a2: float,
-    a3: float,
-    share: float,
+    start: float, start_rate: float, a0: float, a1: float, a2: float, a3: float, share: float
 ) -> tuple[float, float]:
     """Value and second derivative at a share of the step, from the coefficients of `joined`.
 

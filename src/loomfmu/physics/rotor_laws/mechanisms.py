@@ -74,12 +74,7 @@ def slotted_levers(
     """
     turn, g1, g2, g3 = slotted_lever(x, lever_radius, eccentricity)
     angle, h1, h2, h3 = slotted_lever(turn, driven_radius, eccentricity)
-    return (
-        angle,
-        h1 * g1,
-        h2 * g1 * g1 + h1 * g2,
-        h3 * g1 * g1 * g1 + 3.0 * h2 * g1 * g2 + h1 * g3,
-    )
+    return (angle, h1 * g1, h2 * g1 * g1 + h1 * g2, h3 * g1 * g1 * g1 + 3.0 * h2 * g1 * g2 + h1 * g3)
 
 
 def slotted_levers_place(
