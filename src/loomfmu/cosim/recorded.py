@@ -135,7 +135,7 @@ def writer_of(
 ) -> TraceWriter:
     """Return a writer of the trace, with the file begun; `about` are the attributes of the run."""
     try:
-        return TraceWriter(target, about, channels, groups(plan))
+        return TraceWriter(target, about, channels, groups(plan), plan.grid.steps + 1)
     except OSError as error:
         raise cannot_write(path, error) from None
 
