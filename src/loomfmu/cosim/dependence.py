@@ -61,6 +61,9 @@ BOUNCING = MEMORY._replace(factors=(12.0, 4.0, 2.0), near=math.inf, miscounted=0
 # A loop that carries values of the step before is of order one: the changes are 0.6, 1.6 and 3 times it.
 LAGGED = MEMORY._replace(factors=(12.0, 4.0, 2.0))
 
+# The curve of a mechanism of one's own may have a corner at its extreme: what is held there is of order one.
+CORNER = LAGGED._replace(floor=HELD.floor)
+
 
 class Count(NamedTuple):
     """A number of blows so far [1] over time [s], each of shape (samples,)."""
@@ -135,17 +138,20 @@ class Dependence:
         ]
 
     @cached_property
+    def _ours(self) -> set[Any]:
+        return set(COMPONENTS.values())
+
+    @cached_property
     def unsettled(self) -> set[int]:
         """The claims, counted from 0, on what a longer run may change.
 
         Mechanisms of the package without a memory repeat with the shaft and the weave.
         """
-        ours = set(COMPONENTS.values())
         return {
             number
             for number, names in enumerate(self._upstream)
             if MOTION in self.kept[number]
-            or not ours.issuperset(self._components(names))
+            or not self._ours.issuperset(self._components(names))
             or len(movers_of(names, self._requested)) > 1
         }
 
@@ -164,9 +170,10 @@ class Dependence:
         """The method that estimates each claim's error."""
         found = []
         for names, kept in zip(self._upstream, self.kept, strict=True):
-            method = MEMORY if MOTION in kept else HELD if EXTREMES in kept else PRESENT
-            method = LAGGED if self._lagged else method
             components = self._components(names)
+            held = HELD if self._ours.issuperset(components) else CORNER
+            method = MEMORY if MOTION in kept else held if EXTREMES in kept else PRESENT
+            method = LAGGED if self._lagged else method
             method = BOUNCING if any(component and component.bounces for component in components) else method
             found.append(
                 method._replace(

@@ -7,18 +7,19 @@ from pathlib import Path
 from typing import Any
 
 from .importing.fmus import Fmu
+from .importing.ports import Value
 from .planning.plan import Plan
 from .scenes.headings import heading
 from .scenes.instances import Instance
 from .scenes.scene import Scene
 
 
-def attributes(plan: Plan, flavour: str, folder: Path) -> dict[str, str]:
+def attributes(plan: Plan, flavour: str, folder: Path) -> dict[str, str | float]:
     """The attributes of the root of a trace in a folder.
 
     `heading` is made of the values of the run, `title` is the scene's own. `files` are the texts of the files
     that the scene names, `set` the values that differ from the scene, as `--set` takes them; `command`
-    repeats the run.
+    repeats the run. `duration` and `step` are in s.
     """
     scene = plan.scene
     fmus = _fmus(plan.pruned.scene)
@@ -34,11 +35,11 @@ def attributes(plan: Plan, flavour: str, folder: Path) -> dict[str, str]:
         **({} if scene.package else {"flavour": _flavour(scene, flavour)}),
         **_command(scene, _flavour(scene, flavour)),
         **(
-            {"revolutions": f"{scene.periods!r}", "steps_per_revolution": str(scene.steps_per_period)}
+            {"revolutions": scene.periods, "steps_per_revolution": scene.steps_per_period}
             if scene.step is None
-            else {"duration": f"{scene.periods!r} s", "step": f"{scene.step!r} s"}
+            else {"duration": scene.periods, "step": scene.step}
         ),
-        **({} if scene.accuracy is None else {"accuracy": f"{scene.accuracy!r}"}),
+        **({} if scene.accuracy is None else {"accuracy": scene.accuracy}),
         "grid": scene.grid,
         **({"notes": "\n".join(scene.notes)} if scene.notes else {}),
         **{f"fmu_{name}_version": fmu.version for name, fmu in sorted(fmus.items())},
@@ -58,21 +59,22 @@ def scene_file(scene: Scene, folder: Path) -> str:
 
 
 def groups(plan: Plan) -> dict[str, dict[str, Any]]:
-    """The attributes of each instance's group: its FMU, its start values in SI, and their units."""
+    """The attributes of each instance's group: its FMU, its start values in SI, their units and meanings."""
     instances = plan.scene.instances
     return {
-        name: _described(instances[name], list(values)) | values
-        for name, values in plan.effective.groups().items()
+        name: _described(instances[name], values) | values for name, values in plan.effective.groups().items()
     }
 
 
-def _described(instance: Instance, values: list[str]) -> dict[str, str]:
-    ports = instance.fmu.ports
-    units = {name: ports[name].unit for name in values if ports[name].kind == "Real" and ports[name].has_unit}
+def _described(instance: Instance, values: dict[str, Value]) -> dict[str, str]:
+    ports = {name: instance.fmu.ports[name] for name in values}
+    units = {name: port.unit for name, port in ports.items() if port.kind == "Real" and port.has_unit}
+    meanings = {name: meaning for name, port in ports.items() if (meaning := port.meaning(values[name]))}
     return {
         "fmu": instance.fmu.name,
         **instance.published,
         "parameter_units": json.dumps(units),
+        "parameter_meanings": json.dumps(meanings),
     }
 
 

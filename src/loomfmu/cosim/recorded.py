@@ -131,11 +131,11 @@ def target_of(plan: Plan, path: Path, overwrite: bool, report: bool) -> Path:
 
 
 def writer_of(
-    plan: Plan, channels: list[Channel], path: Path, target: Path, about: dict[str, str]
+    plan: Plan, channels: list[Channel], path: Path, target: Path, about: dict[str, str | float]
 ) -> TraceWriter:
     """Return a writer of the trace, with the file begun; `about` are the attributes of the run."""
     try:
-        return TraceWriter(target, about, channels, groups(plan))
+        return TraceWriter(target, about, channels, groups(plan), plan.grid.steps + 1)
     except OSError as error:
         raise cannot_write(path, error) from None
 

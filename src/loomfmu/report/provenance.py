@@ -25,7 +25,9 @@ def section(subject: Subject) -> Section:
     """Machine, values that differ from the scene, grid, warnings, versions and hashes of the first trace."""
     attributes, overrides = subject.trace.attributes, subject.trace.overrides
     facts = [
-        (label, str(attributes[key])) for key, label in PLAIN.items() if attributes.get(key) not in (None, "")
+        (label, _shown(key, attributes[key]))
+        for key, label in PLAIN.items()
+        if attributes.get(key) not in (None, "")
     ]
     if units.is_plain(attributes.get("revolutions", "")):
         turned = subject.trace.turned_otherwise(float(attributes["revolutions"]))
@@ -44,6 +46,11 @@ def section(subject: Subject) -> Section:
             scene=str(attributes.get("scene", "")),
         ),
     )
+
+
+def _shown(key: str, value: Any) -> str:
+    """A fact with its unit; traces of older versions have it in the text."""
+    return f"{value} s" if key in ("duration", "step") and units.is_plain(value) else str(value)
 
 
 def _given(trace: Trace, key: str, text: Any) -> str:

@@ -3,6 +3,7 @@
 from typing import Any
 
 import h5py
+import numpy as np
 
 FILTERS = {h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_SHUFFLE, h5py.h5z.FILTER_FLETCHER32}
 BESIDE = {"valid_if": "ancillary_variables"}  # roles of `Beside` that have another name in CF
@@ -37,12 +38,12 @@ def attributes(item: Any) -> dict[str, Any]:
 
 
 def legible(name: str, value: Any) -> Any:
-    """The value of an attribute. Raises ValueError for text that is not in UTF-8."""
+    """The value of an attribute, numbers as Python's own. Raises ValueError for text not in UTF-8."""
     try:
         f"{name}{value if isinstance(value, str) else ''}".encode()
     except UnicodeEncodeError:  # h5py gives what it cannot decode as surrogates
         raise ValueError(f"its attribute {name!a} is not text in UTF-8") from None
-    return value
+    return value.item() if isinstance(value, np.generic) else value
 
 
 def column(item: Any) -> Any:

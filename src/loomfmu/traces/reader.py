@@ -23,7 +23,13 @@ from .opened import TraceFile
 from .signals import Floats, Signals
 from .verdict import HEADINGS, Verdict
 
-ABOUT = ("parameter_units", "NX_class", "signal", "axes")  # attributes of a group that are not values
+ABOUT = (
+    "parameter_units",
+    "parameter_meanings",
+    "NX_class",
+    "signal",
+    "axes",
+)  # attributes of a group that are not values
 
 
 class Trace(Signals):
@@ -331,7 +337,7 @@ class Trace(Signals):
         with self._file.opened() as file:
             groups = {name: member(file, name) for name in file if name not in SHARED}
             return {
-                f"{name}.{key}": value.item() if isinstance(value, np.generic) else str(value)
+                f"{name}.{key}": value if isinstance(value, int | float) else str(value)
                 for name, group in groups.items()
                 for key, value in attributes(group).items()
                 if key not in ABOUT
@@ -339,13 +345,18 @@ class Trace(Signals):
 
     def parameter_unit(self, name: str) -> str:
         """Unit of a value in `parameters`; "1" for one without."""
+        return self._about_parameter(name, "parameter_units") or "1"
+
+    def _about_parameter(self, name: str, attribute: str) -> str:
+        """The entry of a value in `parameters` in a table of its group; empty where it has none."""
         instance, _, key = name.partition(".")
         with self._file.opened() as file:
-            known = json.loads(member(file, instance).attrs.get("parameter_units", "{}"))
-            return str(known.get(key, "1"))
+            return str(json.loads(member(file, instance).attrs.get(attribute, "{}")).get(key, ""))
 
     def parameter_text(self, name: str) -> str:
         """A value in `parameters` as people read it."""
+        if meaning := self._about_parameter(name, "parameter_meanings"):
+            return meaning
         value = self.parameters[name]
         if not isinstance(value, float):
             return str(value)

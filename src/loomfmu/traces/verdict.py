@@ -35,8 +35,9 @@ class Verdict:
     -1 if at most, and 0 if the trace does not say. `error` estimates how far `worst` is off by the numbers
     alone, in the same unit; NaN where nothing was estimated, infinite where the note says why it is
     not known. Where the bound is that near, or the signal is not known in part of the run, the claim is not
-    `decided`, and does not hold. `spread` is the part of the error that differs between resolutions, and
-    `unsettled` says, as the note does, that a longer run comes nearer to the bound; traces keep neither.
+    `decided`, and does not hold. `spread` is the part of the error that differs between resolutions, `between`
+    what the curves between samples may be off by, and `unsettled` says, as the note does, that a longer run
+    comes nearer to the bound; traces keep none of them.
     """
 
     claim: str
@@ -55,6 +56,7 @@ class Verdict:
     decided: bool = True
     spread: float = field(default=math.nan, compare=False)
     unsettled: str = field(default="", compare=False)
+    between: float = field(default=0.0, compare=False)
 
     def __bool__(self) -> bool:
         return self.holds
@@ -162,7 +164,8 @@ class Verdict:
     def as_dict(self) -> dict[str, Any]:
         """The verdict for JSON, null for what is not finite; `display` has the values in the display unit."""
         known = {field.name: getattr(self, field.name) for field in fields(self)}
-        del known["display_unit"], known["spread"], known["unsettled"]
+        for name in ("display_unit", "spread", "unsettled", "between"):
+            del known[name]
         known |= {"distance": self.distance, "relative_distance": self.relative_distance}
         display = {name: self.displayed(known[name]) for name in ("bound", "worst", "distance", "error")}
         return _finite(known) | {"display": _finite(display) | {"unit": self.label}}

@@ -18,7 +18,7 @@ from .. import units
 from ..files import make_folder, put
 from ..version import __version__
 from .chunks import ROWS, Columns
-from .created import INTEGERS, REALS, annotate, dataset
+from .created import INTEGERS, REALS, annotate, chunk_of, dataset
 from .disk import reserve
 from .edit import edited
 from .layout import BESIDE
@@ -39,7 +39,7 @@ def partial_of(path: Path, mark: str = "") -> Path:
 
 
 class TraceWriter:
-    """Writes a trace. Complete it with `complete`, or leave what was written with `abandon`."""
+    """Writes a trace of at most so many rows. Complete it with `complete`, or leave it with `abandon`."""
 
     def __init__(
         self,
@@ -47,6 +47,7 @@ class TraceWriter:
         attributes: Mapping[str, Any],
         channels: Sequence[Channel],
         groups: Mapping[str, Mapping[str, Any]],
+        rows: int = h5py.h5s.UNLIMITED,
     ):
         self.path = path
         self.partial = partial_of(path, mark())
@@ -69,10 +70,10 @@ class TraceWriter:
         try:
             self._keep_metadata()
             reserve(self._file.id.get_vfd_handle(), header)
-            shared, datasets = self._create(attributes, groups)
-            self._shared = Columns(shared, "f8")
-            self._reals, self._real_columns = self._chosen(datasets, "f8", real=True)
-            self._integers, self._integer_columns = self._chosen(datasets, "i4", real=False)
+            shared, datasets = self._create(attributes, groups, rows)
+            self._shared = Columns(shared, "f8", chunk_of(rows))
+            self._reals, self._real_columns = self._chosen(datasets, "f8", rows)
+            self._integers, self._integer_columns = self._chosen(datasets, "i4", rows)
             self._file.swmr_mode = True
         except BaseException:
             self._file.close()
@@ -92,7 +93,7 @@ class TraceWriter:
         self._file.id.set_mdc_config(config)
 
     def _create(
-        self, attributes: Mapping[str, Any], groups: Mapping[str, Mapping[str, Any]]
+        self, attributes: Mapping[str, Any], groups: Mapping[str, Mapping[str, Any]], rows: int
     ) -> tuple[list[Any], list[Any]]:
         """Everything in the file but samples; the datasets of time and angle, and those of the channels.
 
@@ -100,12 +101,14 @@ class TraceWriter:
         """
         file = self._file
         first = {"Conventions": "CF-1.11", "software": SOFTWARE}
+        if "command" in attributes:  # no date: equal runs write equal bytes
+            first["history"] = f"{SOFTWARE}: {attributes['command']}"
         shown = {"NX_class": "NXroot", "default": self.channels[0].instance} if self.channels else {}
         annotate(file, {**first, **shown, **attributes, "status": "running"})
-        time = dataset(file, "time", REALS)
-        annotate(time, _about("s", "time", "Time since the start of the run"))
+        time = dataset(file, "time", REALS, rows)
+        annotate(time, {**_about("s", "time", "Time since the start of the run"), "standard_name": "time"})
         time.make_scale("time")
-        angle = dataset(file, "shaft_angle", REALS)
+        angle = dataset(file, "shaft_angle", REALS, rows)
         turned = _about("rad", "shaft angle", "Angle of the main shaft, not wrapped")
         annotate(angle, {**turned, "DISPLAY_UNIT": "deg"})
         angle.dims[0].attach_scale(time)
@@ -121,7 +124,9 @@ class TraceWriter:
                 # NeXus: h5web opens the group on a plot of its first variable
                 plot = {"NX_class": "NXdata", "signal": channel.variable, "axes": "time"}
                 annotate(group, {**plot, **groups.get(channel.instance, {})})
-            made = dataset(found[channel.instance], channel.variable, REALS if channel.real else INTEGERS)
+            made = dataset(
+                found[channel.instance], channel.variable, REALS if channel.real else INTEGERS, rows
+            )
             annotate(made, _about_channel(channel))
             made.dims[0].attach_scale(time)
             datasets.append(made)
@@ -129,12 +134,15 @@ class TraceWriter:
             annotate(file.create_group(instance), groups[instance])
         return [time, angle], datasets
 
-    def _chosen(self, datasets: Sequence[Any], kind: str, real: bool) -> tuple[Columns, list[int]]:
+    def _chosen(self, datasets: Sequence[Any], kind: str, rows: int) -> tuple[Columns, list[int]]:
         """The datasets of one kind of channels, and the columns that go into them."""
-        pairs = [
-            (each, of.column) for each, of in zip(datasets, self.channels, strict=True) if of.real == real
+        chosen = [
+            (dataset, channel.column)
+            for dataset, channel in zip(datasets, self.channels, strict=True)
+            if channel.real == (kind == "f8")
         ]
-        return Columns([dataset for dataset, _ in pairs], kind), [column for _, column in pairs]
+        columns = Columns([dataset for dataset, _ in chosen], kind, chunk_of(rows))
+        return columns, [column for _, column in chosen]
 
     def append(self, time: Floats, angle: Floats, reals: Floats, integers: Integers) -> None:
         """Write a block: values along the rows, signals along the columns."""
@@ -174,9 +182,17 @@ class TraceWriter:
         return trace
 
     def _claimed(self, verdicts: Sequence[dict[str, Any]]) -> str:
-        """The recorded signal that a claim is on, the first of them; empty if there is none."""
-        recorded = {f"{channel.instance}.{channel.variable}" for channel in self.channels}
-        return next((each["signal"] for each in verdicts if each["signal"] in recorded), "")
+        """The recorded signal that a claim is on, the first of them; empty if there is none.
+
+        For an extreme so far, a staircase, it is the signal whose extreme that is.
+        """
+        recorded = {f"{channel.instance}.{channel.variable}": channel.variable for channel in self.channels}
+        for channel in self.channels:
+            for extreme in {channel.beside.lowest, channel.beside.highest} - {channel.variable}:
+                if f"{channel.instance}.{extreme}" in recorded:
+                    recorded[f"{channel.instance}.{extreme}"] = channel.variable
+        claimed = next((verdict["signal"] for verdict in verdicts if verdict["signal"] in recorded), "")
+        return claimed and f"{claimed.partition('.')[0]}.{recorded[claimed]}"
 
     def _annotate(self, attributes: Mapping[str, str], plotted: str = "") -> None:
         """Write attributes of the closed file, and which signal viewers show first."""

@@ -21,7 +21,7 @@ ROOM = 16  # for the times that a function finds, at first
 BESIDE = ("valid_if", "error", "lowest", "highest")  # in the order of `run_beside`
 FIELDS = (  # of `struct verdict`
     *("holds", "decided", "form", "bound", "worst", "time"),
-    *("angle", "revolution", "error", "spread", "distance"),
+    *("angle", "revolution", "error", "spread", "distance", "between"),
 )
 Floats = NDArray[np.float64]
 Table = dict[str, tuple[int, list[str | None]]]  # of each signal its number, its rate and those `BESIDE` it
@@ -132,7 +132,7 @@ class Run:
         found, words = _Found(), question.words.encode()
         _check(self._library.judge(self._run, self._list(trace, question), words, found))
         values = [math.nan if math.isnan(each) else each for each in found]
-        holds, decided, number, bound, worst, time, angle, revolution, error, *_rest = values
+        holds, decided, number, bound, worst, time, angle, revolution, error, *_rest, between = values
         form = question.forms[int(number)]
         return Verdict(
             f"{name}: {form.text}" if name else form.text,
@@ -148,13 +148,14 @@ class Run:
             sense=form.sense,
             error=error,
             decided=decided > 0.0,
+            between=between,
         )
 
     def settled(self, trace: Signals, question: Question, verdict: Verdict, *changes: float) -> Verdict:
         """Return a verdict with its error; `changes` are what `settle` of judge.h takes after the verdict."""
         found = _numbers_of(verdict, question)
         _check(self._library.settle(self._run, self._list(trace, question), found, *changes))
-        holds, decided, *_others, error, spread, _distance = found
+        holds, decided, *_others, error, spread, _distance, _between = found
         return replace(verdict, error=error, spread=spread, decided=decided > 0.0, holds=holds > 0.0)
 
     def model_error(self, trace: Signals, question: Question, verdict: Verdict) -> float:

@@ -149,6 +149,12 @@ class Port:
         """The choice that a number stands for."""
         return self.choices[self.numbers.index(int(number))]
 
+    def meaning(self, value: Value) -> str:
+        """The choice that a value stands for, or "true" or "false"; empty for a plain number."""
+        if self.kind == "Boolean":
+            return str(bool(value)).lower()
+        return self.choice(value) if self.choices else ""
+
     def _choice(self, given: str, where: str) -> int:
         """The number of a choice, whichever of blank, - and _ its name is written with."""
         alike = [choice for choice in self.choices if _joined(choice) == _joined(given)]

@@ -158,6 +158,11 @@ def _fed_apart(
                 found.setdefault(
                     name, f"{name}.{port.rate} is {how}, but {name}.{variable} is wired; wire both"
                 )
+            elif here in wired and not _is_rate(scene, wired[there], wired[here]):
+                sources = f"{name}.{port.rate} comes from {'.'.join(wired[there])}"
+                found.setdefault(
+                    name, f"{sources}, which is not the rate of {'.'.join(wired[here])}; wire both from one FMU"
+                )
             elif variable in instance.fmu.shaft_inputs[:1] and not {here, there} & fed:
                 found.setdefault(name, f"{name} follows a shaft, but nothing feeds {name}.{variable}")
             elif there in wired and here in driven:
@@ -165,6 +170,12 @@ def _fed_apart(
                     name, f"{name}.{port.rate} is wired, but {name}.{variable} a table; give both"
                 )
     return found
+
+
+def _is_rate(scene: Scene, rate: tuple[str, str], source: tuple[str, str]) -> bool:
+    """Return whether an output is the rate of another one, as far as their FMU says."""
+    known = scene.instances[source[0]].fmu.ports[source[1]].rate if source[0] in scene.instances else None
+    return rate[0] == source[0] and known in (None, rate[1])
 
 
 def _needs_equal_steps(scene: Scene) -> str:

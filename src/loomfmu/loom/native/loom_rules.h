@@ -32,6 +32,7 @@ static void judge_fluctuation(struct run *run, const struct call *call, struct a
         if (!(fluctuation <= answer->worst)) {
             answer->worst = fluctuation;
             answer->time = low.time;
+            answer->between = mean > 0.0 ? (known_doubt(low) + known_doubt(high)) / mean : 0.0;
         }
     }
     if (isnan(answer->worst) && times.count > 1 && skip >= (double)(times.count - 1))
@@ -67,6 +68,7 @@ static double opening(struct run *run, const struct call *call, const struct str
         struct extreme closest = nearest(lift, 0.5 * number[0], shed);
         add_moment(run, &found, 2.0 * number[1] * closest.value, closest.time);
         if (!alone) {
+            answer->between = larger(answer->between, 2.0 * number[1] * known_doubt(closest));
             note_unknown(run, answer, lift);
             note_coarse(run, answer, closest);
         }
@@ -118,6 +120,7 @@ static void judge_transfer(struct run *run, const struct call *call, struct answ
     for (ptrdiff_t place = 0; place < within.count; place++) {
         struct stretches pass = {1, 1, &within.list[place]};
         struct extreme most = lowest(overlap, -1.0, &pass);
+        answer->between = larger(answer->between, known_doubt(most));
         add_moment(run, &found, most.value, most.time);
         note_coarse(run, answer, most);
     }
@@ -175,6 +178,7 @@ static void judge_nip(struct run *run, const struct call *call, struct answer *a
     answer->bound = answer->form == 1 ? largest : least;
     answer->worst = ratio;
     answer->time = most.time;
+    answer->between = (known_doubt(held) + ratio * known_doubt(most)) / most.value;
     answer->holds = least - SAME <= ratio && ratio <= largest + SAME;
     note_coarse(run, answer, most);
     note_coarse(run, answer, held);

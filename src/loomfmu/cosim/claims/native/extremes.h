@@ -15,6 +15,20 @@ struct extreme {
 
 static const struct extreme NO_EXTREME = {NAN, NAN, NAN, NAN, false};
 
+/* What the value may be off by as the curve between the samples may be. */
+static double doubt_of(struct extreme found)
+{
+    const double sure = isfinite(found.sure) ? found.sure : found.value;
+    return larger(fabs(found.value - found.possible), fabs(found.value - sure));
+}
+
+/* The same where that is known: 0 for a motion that is known only at the samples. */
+static double known_doubt(struct extreme found)
+{
+    const double doubt = doubt_of(found);
+    return isfinite(doubt) ? doubt : 0.0;
+}
+
 /* A search for where `sign` times a motion is lowest: values with their times, and the best, sure and possible ones. */
 struct search {
     struct motion *motion;
@@ -191,6 +205,7 @@ static struct extreme nearest(struct motion *motion, double level, const struct 
     if (!motion->finite)
         return NO_EXTREME;
     struct extreme found = {.value = 0.0};
+    double doubt = 0.0;
     struct times passed = crossings_of(motion, level);
     struct moments sides = {0, 0, NULL};
     for (ptrdiff_t place = 0; place < passed.count; place++)
@@ -209,11 +224,13 @@ static struct extreme nearest(struct motion *motion, double level, const struct 
             struct extreme its = lowest(motion, sign, &side);
             add_moment(motion->run, &sides, sign * (its.value - level), its.time);
             found.coarse = found.coarse || its.coarse;
+            doubt = larger(doubt, known_doubt(its));
         }
     }
     const struct moment least = first_lowest(&sides, SAME);
-    found.value = least.value;
+    found.value = found.sure = least.value;
     found.time = least.time;
+    found.possible = least.value - doubt;
     return found;
 }
 

@@ -23,18 +23,6 @@ static double left_by_model(struct run *run, const struct call *call, const stru
     return off_by(run, form.signal, verdict->worst, verdict->time, judged.always ? NULL : &judged.within);
 }
 
-/* What its curve may be off by between the samples, which runs on other steps may not show. */
-static double unresolved(struct run *run, const struct call *call)
-{
-    if (!is_by(call, judge_bounded))
-        return 0.0;
-    struct answer unused = {0};
-    const struct judged judged = when_judged(run, call);
-    const struct extreme found = worst_of(run, call, &judged, &unused);
-    const double sure = isfinite(found.sure) ? found.sure : found.value;
-    return larger(fabs(found.value - found.possible), fabs(found.value - sure));
-}
-
 #if defined(_WIN32)
 #define EXPORT(name) __declspec(dllexport)
 #elif defined(__wasm__)
@@ -167,7 +155,7 @@ bool settle(struct run *run, const double *question, struct verdict *verdict, do
     const double start = form.signal < 0 ? 0.0 : sample_of(run, form.signal, 0);
     const double least = larger(larger(noise, share * larger(fabs(verdict->worst), fabs(verdict->bound))),
                                 model > 0.0 ? 0.0 : scatter * fabs(verdict->worst - start));
-    const double left = larger(unresolved(run, &call), model);
+    const double left = larger(verdict->between, model);
     if (left == INFINITY) { /* a sample may fail the claim, but does not say by how much the signal does */
         estimate(verdict, sense, larger(spread, least), spread, model);
         verdict->error = INFINITY;

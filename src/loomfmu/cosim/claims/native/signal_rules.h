@@ -30,6 +30,7 @@ static void take_moment(struct answer *answer, struct moment found)
 static void take_extreme(struct answer *answer, struct extreme found)
 {
     take_moment(answer, (struct moment){found.value, found.time});
+    answer->between = known_doubt(found);
 }
 
 /* Where `sign` times a signal is lowest, with notes on how it is known. */
@@ -106,6 +107,7 @@ static void judge_bounded(struct run *run, const struct call *call, struct answe
     const double sense = form_of(call, 0).sense, least = sense * answer->bound;
     const bool nowhere = !judged.always && judged.within.count == 0 && judged.gaps.count > 0;
     take_extreme(answer, found);
+    answer->between = doubt_of(found); /* known only at the samples, the signal may be anything between them */
     answer->holds = nowhere || sense * found.sure >= least;
     answer->some_known = true;
     answer->gaps = judged.gaps;

@@ -27,7 +27,7 @@ struct call {
 };
 
 struct verdict { /* judging.py and live_judge.js have the same; all are numbers of one size */
-    double holds, decided, form, bound, worst, time, angle, revolution, error, spread, distance;
+    double holds, decided, form, bound, worst, time, angle, revolution, error, spread, distance, between;
 };
 
 struct answer { /* of a rule */
@@ -36,7 +36,8 @@ struct answer { /* of a rule */
     bool fails_for_good, some_known; /* whatever the rest of a run shows; if `gaps` are all that count */
     bool any_length;                 /* the run need not show a whole revolution, nor the repeat of the weave */
     const char *unseen;              /* what the run does not show of all that it must, or an empty text */
-    double off;                      /* where only the curve between samples passes the bound, what it may be off by */
+    double between;                  /* what the curves between samples may be off by, as other steps may not show */
+    double off;                      /* the same where only such a curve passes the bound, else NaN */
     struct stretches gaps;
     struct note *notes;
     ptrdiff_t count, space;
@@ -145,7 +146,8 @@ static struct verdict concluded(struct run *run, const struct call *call, struct
     const struct form form = form_of(call, answer->form);
     struct motion *turning = shaft_of(run);
     struct verdict verdict = {.form = answer->form, .bound = answer->bound, .worst = answer->worst,
-                              .time = answer->time, .angle = NAN, .revolution = NAN, .spread = NAN};
+                              .time = answer->time, .angle = NAN, .revolution = NAN, .spread = NAN,
+                              .between = answer->between};
     if (turning != NULL && too_coarse(turning))
         note(run, answer, COARSE_NOTE, DOUBTFUL);
     bool holds = isnan(answer->holds) ? form.sense * answer->worst >= form.sense * answer->bound : answer->holds != 0.0;

@@ -1,0 +1,188 @@
+"""Traces as other programs read them: every value and every attribute, as h5py has them."""
+
+import re
+import shutil
+import subprocess
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import pytest
+
+import loomfmu
+
+SIMS = Path(__file__).parents[2] / "sims"
+SCENES = ("wl680_3600", "both_rapiers", "satin")
+PLACES = ("DIMENSION_LIST", "REFERENCE_LIST", "CLASS", "NAME")  # attributes by which HDF5 joins datasets
+
+Found = Mapping[str, Any]  # values by the path of a dataset, attributes by that of their owner and @
+
+
+@pytest.fixture(scope="module", params=SCENES)
+def path(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The trace of one scene, of few steps."""
+    output = tmp_path_factory.mktemp("readers") / f"{request.param}.h5"
+    scene = SIMS / f"{request.param}.toml"
+    return loomfmu.run(scene, set={"steps_per_revolution": 90, "revolutions": 1}, output=output).path
+
+
+@pytest.fixture(scope="module")
+def written(path: Path) -> Found:
+    """Values and attributes by h5py."""
+    found: dict[str, Any] = {}
+
+    def visit(name: str, item: Any) -> None:
+        found.update({f"/{name}@{key}": value for key, value in item.attrs.items() if key not in PLACES})
+        if isinstance(item, h5py.Dataset):
+            found[f"/{name}"] = item[:]
+
+    with h5py.File(path) as file:
+        visit("", file)
+        for name, item in file.items():
+            visit(name, item)
+            for variable in item if isinstance(item, h5py.Group) else ():
+                visit(f"{name}/{variable}", item[variable])
+    return found
+
+
+def by_netcdf4(path: Path) -> Found:
+    netcdf4 = pytest.importorskip("netCDF4")
+    found: dict[str, Any] = {}
+
+    def visit(name: str, item: Any) -> None:
+        found.update({f"{name or '/'}@{key}": item.getncattr(key) for key in item.ncattrs()})
+        for key, variable in item.variables.items():
+            found[f"{name}/{key}"] = variable[:].data
+            owner = f"{name}/{key}"
+            found.update({f"{owner}@{each}": variable.getncattr(each) for each in variable.ncattrs()})
+        for key, group in item.groups.items():
+            visit(f"{name}/{key}", group)
+
+    with netcdf4.Dataset(path) as file:
+        file.set_auto_mask(False)
+        visit("", file)
+    return found
+
+
+def by_xarray(engine: str) -> Callable[[Path], Found]:
+    def read(path: Path) -> Found:
+        xarray = pytest.importorskip("xarray")
+        pytest.importorskip({"h5netcdf": "h5netcdf", "netcdf4": "netCDF4"}[engine])
+        found: dict[str, Any] = {}
+        with xarray.open_datatree(path, engine=engine, decode_cf=False) as tree:
+            for node in tree.subtree:
+                name = node.path.rstrip("/")
+                found.update({f"{node.path}@{key}": value for key, value in node.attrs.items()})
+                for key, variable in node.variables.items():
+                    found[f"{name}/{key}"] = variable.values
+                    found.update({f"{name}/{key}@{each}": value for each, value in variable.attrs.items()})
+        return found
+
+    return read
+
+
+def by_sdf(path: Path) -> Found:
+    sdf = pytest.importorskip("sdf")
+    found: dict[str, Any] = {}
+
+    def visit(name: str, group: Any) -> None:
+        for dataset in group.datasets:
+            found[f"{name}/{dataset.name}"] = dataset.data
+            found[f"{name}/{dataset.name}@UNIT"] = dataset.unit
+        for each in group.groups:
+            visit(f"{name}/{each.name}", each)
+
+    visit("", sdf.load(str(path)))
+    return found
+
+
+def by_silx(path: Path) -> Found:
+    silx = pytest.importorskip("silx.io")
+    found: dict[str, Any] = {}
+    with silx.open(str(path)) as file:
+        for name, group in file.items():
+            for key, item in group.items() if hasattr(group, "items") else ():
+                found[f"/{name}/{key}"] = item[()]
+                found[f"/{name}/{key}@units"] = item.attrs["units"]
+    return found
+
+
+def by_ncdump(path: Path) -> Found:
+    text = said_by("ncdump", "-p", "9,17", str(path))
+    return {
+        f"/time@{key}": value for key, value in re.findall(r'^\s*string time:(\w+) = "(.*)" ;$', text, re.M)
+    }
+
+
+def by_h5dump(path: Path) -> Found:
+    text = said_by("h5dump", "-d", "/time", "-y", "-w", "1", "-m", "%.17g", str(path))
+    block = text[text.index("DATA {") : text.index("}", text.index("DATA {"))]
+    return {"/time": np.array([float(number) for number in block[6:].replace(",", " ").split()])}
+
+
+def by_octave(path: Path) -> Found:
+    text = said_by("octave-cli", "--eval", f"d = load('{path}'); printf('%.17g\\n', d.belt.margin);")
+    return {"/belt/margin": np.array(text.split(), dtype=float)}
+
+
+def said_by(*command: str) -> str:
+    if not shutil.which(command[0]):
+        pytest.skip(f"{command[0]} is not installed")
+    return subprocess.run(command, check=True, capture_output=True, text=True, timeout=120).stdout
+
+
+READERS = {
+    "netCDF4": by_netcdf4,
+    "xarray-h5netcdf": by_xarray("h5netcdf"),
+    "xarray-netcdf4": by_xarray("netcdf4"),
+    "SDF": by_sdf,
+    "silx": by_silx,
+    "ncdump": by_ncdump,
+    "h5dump": by_h5dump,
+    "octave": by_octave,
+}
+WHOLE = ("netCDF4", "xarray-h5netcdf", "xarray-netcdf4")  # these give all values and attributes
+
+
+@pytest.mark.parametrize("reader", READERS)
+def test_other_programs_read_what_was_written(reader: str, path: Path, written: Found) -> None:
+    found = READERS[reader](path)
+    assert found
+    if reader in WHOLE:
+        assert not found.keys() - written.keys()
+        lacking = {name.partition("@")[2] for name in written.keys() - found.keys()}
+        assert lacking <= ({"dtype"} if reader.startswith("xarray") else set())  # it makes Booleans of that
+    for name, value in found.items():
+        np.testing.assert_array_equal(value, written[name], err_msg=name)
+
+
+def test_a_group_becomes_a_netcdf_file(path: Path, tmp_path: Path) -> None:
+    xarray = pytest.importorskip("xarray")
+    belt = xarray.open_dataset(path, group="belt", engine="h5netcdf")
+    belt.to_netcdf(tmp_path / "belt.nc", engine="h5netcdf")
+    assert xarray.open_dataset(tmp_path / "belt.nc", engine="h5netcdf").identical(belt)
+
+
+# A run has no date, and CF wants a time since one; links to one time are one dimension under several names
+ACCEPTED = {
+    "Dimensions with the same name must be the same object (ID).",
+    "time must be in a valid units format <unit> since <epoch> not s",
+    "time does not have correct time units",
+}
+
+
+def test_the_cf_checker_finds_no_other_error(path: Path, tmp_path: Path) -> None:
+    pytest.importorskip("compliance_checker")
+    from compliance_checker.runner import CheckSuite
+
+    named = shutil.copy(path, tmp_path / "trace.nc")
+    CheckSuite.load_all_available_checkers()
+    suite = CheckSuite()
+    results, errors = suite.run_all(suite.load_dataset(str(named)), ["cf:1.11"], [])["cf:1.11"]
+    assert not errors
+    failed = [each for each in results if each.weight == 3 and each.value[0] < each.value[1]]
+    assert {
+        message for each in failed for message in each.msgs if "found in same group" not in message
+    } <= ACCEPTED
