@@ -35,9 +35,9 @@ class Verdict:
     -1 if at most, and 0 if the trace does not say. `error` estimates how far `worst` is off by the numbers
     alone, in the same unit; NaN where nothing was estimated, infinite where the note says why it is
     not known. Where the bound is that near, or the signal is not known in part of the run, the claim is not
-    `decided`, and does not hold. `spread` is the part of the error that differs between resolutions, `between`
-    what the curves between samples may be off by, and `unsettled` says, as the note does, that a longer run
-    comes nearer to the bound; traces keep none of them.
+    `decided`, and does not hold. `spread` is the part of the error that differs between resolutions,
+    `between` what the curves between samples may be off by, and `unsettled` says, as the note does, that a
+    longer run comes nearer to the bound; traces keep none of them.
     """
 
     claim: str

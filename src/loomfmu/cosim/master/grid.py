@@ -153,22 +153,18 @@ def _fed_apart(
             if port.causality != "input" or port.rate is None or instance.switched_off(variable)[0]:
                 continue
             here, there = (name, variable), (name, port.rate)
+            value, rate = ".".join(here), ".".join(there)
             if here in wired and there not in wired:
                 how = "a table" if there in driven else "constant"
-                found.setdefault(
-                    name, f"{name}.{port.rate} is {how}, but {name}.{variable} is wired; wire both"
-                )
+                found.setdefault(name, f"{rate} is {how}, but {value} is wired; wire both")
             elif here in wired and not _is_rate(scene, wired[there], wired[here]):
-                sources = f"{name}.{port.rate} comes from {'.'.join(wired[there])}"
-                found.setdefault(
-                    name, f"{sources}, which is not the rate of {'.'.join(wired[here])}; wire both from one FMU"
-                )
+                of, source = ".".join(wired[here]), ".".join(wired[there])
+                wrong = f"{rate} is wired to {source}, which is not the rate of {of}"
+                found.setdefault(name, f"{wrong}; wire both to one FMU")
             elif variable in instance.fmu.shaft_inputs[:1] and not {here, there} & fed:
-                found.setdefault(name, f"{name} follows a shaft, but nothing feeds {name}.{variable}")
+                found.setdefault(name, f"{name} follows a shaft, but nothing feeds {value}")
             elif there in wired and here in driven:
-                found.setdefault(
-                    name, f"{name}.{port.rate} is wired, but {name}.{variable} a table; give both"
-                )
+                found.setdefault(name, f"{rate} is wired, but {value} a table; give both")
     return found
 
 
