@@ -15,13 +15,14 @@ import matplotlib
 import numpy as np
 import pytest
 from browser import NARROW, until
+from made_traces import made
 
 from loomfmu import LoomfmuError
 from loomfmu.cli import main
 from loomfmu.report import pictures, plots
 from loomfmu.report.section import Subject
 from loomfmu.report.templates import text
-from loomfmu.traces import Channel, Trace, TraceWriter
+from loomfmu.traces import Trace
 
 Open = Callable[..., Any]
 Written = Callable[..., Path]
@@ -30,14 +31,8 @@ SIMS = Path(__file__).parents[2] / "sims"
 
 def recorded(path: Path, reals: np.ndarray, counts: np.ndarray) -> Trace:
     """A trace of reals r0, r1, ... [mm] and a count, over time alone."""
-    channels = [Channel("a", f"r{k}", "m", "mm", "", k) for k in range(reals.shape[1])]
-    channels.append(Channel("a", "count", "1", "1", "", 0, real=False))
-    writer = TraceWriter(path, {"title": "t", "software": "s"}, channels, {"a": {"fmu": "A"}})
-    for start in range(0, len(reals), 50_000):
-        rows = slice(start, start + 50_000)
-        times = np.arange(len(reals))[rows] * 1e-3
-        writer.append(times, np.zeros(len(times)), reals[rows], counts[rows, None].astype("i4"))
-    return writer.complete([])
+    signals = {f"a.r{k}": column for k, column in enumerate(reals.T)} | {"a.count": counts.astype(int)}
+    return made(path, signals, display="mm", groups={"a": {"fmu": "A"}})
 
 
 def unpacked(packed: str) -> np.ndarray:
