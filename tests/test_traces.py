@@ -838,7 +838,7 @@ def test_files_that_are_something_else_are_refused(tmp_path: Path) -> None:
         "alike.h5": r"the attribute 'software' is missing\)$",
     }
     for name, reason in reasons.items():
-        with pytest.raises(LoomfmuError, match=f"{name}: .*{reason}|{name}: {reason}"):
+        with pytest.raises(LoomfmuError, match=f"{name}: .*{reason}"):
             Trace(tmp_path / name)
     assert not TRACE.ours(tmp_path / "alike.h5")  # it is not replaced
 

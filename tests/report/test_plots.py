@@ -213,12 +213,13 @@ def test_a_matplotlibrc_changes_no_picture(copied: Path, command: str, signals: 
     assert pictures[0] == pictures[1]
 
 
-def test_a_backend_of_another_environment_is_not_asked_for(copied: Path) -> None:
-    """As a notebook of another environment sets it for every shell command."""
-    command = [sys.executable, "-m", "loomfmu.cli", "plot", str(copied), "belt.margin", "--output", "a.png"]
+def test_a_backend_of_another_environment_is_not_asked_for(copied: Path, fast: Trace) -> None:
+    """As a notebook of another environment sets it for every shell command; the picture is beside its trace."""
+    arguments = ["plot", copied.name, str(fast.path), "belt.margin", "--over", "time"]
     environment = os.environ | {"MPLBACKEND": "module://matplotlib_inline.backend_inline"}
+    command = [sys.executable, "-m", "loomfmu.cli", *arguments]
     done = subprocess.run(command, cwd=copied.parent, env=environment, capture_output=True, text=True)
-    assert (done.returncode, done.stdout) == (0, "written: a.png\n"), done.stderr
+    assert (done.returncode, done.stdout) == (0, "written: demo_plot.png\n"), done.stderr
 
 
 def test_a_pattern_draws_all_signals_that_it_names(copied: Path) -> None:
@@ -228,14 +229,6 @@ def test_a_pattern_draws_all_signals_that_it_names(copied: Path) -> None:
     for output, names in zip(pictures, (["heald_*.lift"], healds), strict=True):
         assert main(["plot", str(copied), *names, "--output", str(output)]) == 0
     assert pictures[0].read_bytes() == pictures[1].read_bytes()
-
-
-def test_a_picture_lies_beside_its_trace(
-    copied: Path, fast: Trace, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(copied.parent)
-    assert main(["plot", copied.name, str(fast.path), "belt.margin", "--over", "time"]) == 0
-    assert capsys.readouterr().out == "written: demo_plot.png\n"
 
 
 def test_a_range_shows_a_dip_beside_the_bound_of_its_claim(
