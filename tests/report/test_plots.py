@@ -214,12 +214,12 @@ def test_a_matplotlibrc_changes_no_picture(copied: Path, command: str, signals: 
 
 
 def test_a_backend_of_another_environment_is_not_asked_for(copied: Path, fast: Trace) -> None:
-    """As a notebook of another environment sets it for every shell command; the picture is beside its trace."""
+    """As a notebook of another environment sets it for every shell command."""
     arguments = ["plot", copied.name, str(fast.path), "belt.margin", "--over", "time"]
     environment = os.environ | {"MPLBACKEND": "module://matplotlib_inline.backend_inline"}
     command = [sys.executable, "-m", "loomfmu.cli", *arguments]
     done = subprocess.run(command, cwd=copied.parent, env=environment, capture_output=True, text=True)
-    assert (done.returncode, done.stdout) == (0, "written: demo_plot.png\n"), done.stderr
+    assert (done.returncode, done.stdout) == (0, "written: demo_plot.png\n"), done.stderr  # beside its trace
 
 
 def test_a_pattern_draws_all_signals_that_it_names(copied: Path) -> None:
