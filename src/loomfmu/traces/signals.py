@@ -153,10 +153,6 @@ class Signals(ABC):
         """The recorded signal that says how far this one may be off whatever the steps, if there is one."""
         return self.beside(signal, "error")
 
-    def held(self, signal: str, sign: float) -> str | None:
-        """The recorded signal that holds the lowest value of this one so far, or with sign -1 the highest."""
-        return self.beside(signal, "lowest" if sign > 0.0 else "highest")
-
     @abstractmethod
     def parameter(self, signal: str) -> float:
         """A parameter of an instance as it was set, such as `heald_1.stroke`."""
