@@ -43,6 +43,11 @@ def blocks(page: Path, language: str) -> list[str]:
     return re.findall(rf"^```{language}\n(.*?)^```$", page.read_text(), re.DOTALL | re.MULTILINE)
 
 
+def prose(page: Path) -> str:
+    """The text of a page in one line."""
+    return " ".join(page.read_text().split())
+
+
 def anchors(page: Path) -> set[str]:
     """The places of a page that a link can name, as GitHub makes them of its headings."""
     headings = re.findall(r"^#+ (.*)$", page.read_text(), re.MULTILINE)
@@ -69,28 +74,24 @@ def test_links_lead_somewhere(page: Path) -> None:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=NAMES)
-def test_commands_are_understood(page: Path) -> None:
+def test_commands_and_snippets_can_be_read(page: Path) -> None:
     for arguments in commands(page):
         cli_commands.parser().parse_args(arguments)  # exits where it does not understand
+    for text in blocks(page, "python"):
+        ast.parse(text)
+    for text in blocks(page, "toml"):
+        tomllib.loads(text)
 
 
 def test_the_house_lists_what_is_there_and_the_layers_as_they_are_enforced() -> None:
-    text = (HOUSE / "docs" / "contributing" / "architecture.md").read_text()
-    listed = set(re.findall(r"^      ([a-z_]+(?:\.py|/))", text, re.MULTILINE))
+    page = HOUSE / "docs" / "contributing" / "architecture.md"
+    listed = set(re.findall(r"^      ([a-z_]+(?:\.py|/))", page.read_text(), re.MULTILINE))
     package = [path for path in (HOUSE / "src" / "loomfmu").iterdir() if path.name[0] not in "_."]
     there = {f"{path.name}/" if path.is_dir() else path.name for path in package}
     assert listed == there - {"py.typed"}
     rules = tomllib.loads((HOUSE / "pyproject.toml").read_text())["tool"]["importlinter"]["contracts"]
     layers = [layer.replace("loomfmu.", "").replace(" | ", ", ") for layer in rules[0]["layers"]]
-    assert " > ".join(layers) in " ".join(text.split())
-
-
-@pytest.mark.parametrize("page", PAGES, ids=NAMES)
-def test_snippets_can_be_read(page: Path) -> None:
-    for text in blocks(page, "python"):
-        ast.parse(text)
-    for text in blocks(page, "toml"):
-        tomllib.loads(text)
+    assert " > ".join(layers) in prose(page)
 
 
 def test_scenes_and_sweeps_that_are_shown_are_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -202,19 +203,8 @@ def within(start: str, command: str) -> bool:
 
 
 WORDS = {3: "three", 4: "four", 5: "five", 6: "six"}
-FOLLOWED = (
-    "tour",
-    "report",
-    "scenes",
-    "how_sure",
-    "traces",
-    "testing",
-    "limits",
-    "tolerances",
-    "optimizing",
-    "fitting",
-)
 LONG = ("report", "limits", "testing", "tolerances", "optimizing", "fitting")  # followed by the slow tests
+FOLLOWED = ("tour", "scenes", "how_sure", "traces", *LONG)
 NOT_RUN = {  # pages with commands or Python of which no test runs all, and why
     "importing": "other tools, which tests/foreign runs where they are installed",
     "sweeps": "its Python reads the results of a sweep that takes minutes",
@@ -294,7 +284,7 @@ def test_the_readme_quotes_the_benchmarks() -> None:
     )
     ours, other = (round(float(each)) for each in row)
     (run,) = re.findall(r"^\| `loomfmu run`: .* \| (\w+) ms \|", BENCHMARKS, re.M)
-    text = " ".join(README.read_text().split())
+    text = prose(README)
     assert f"all outputs recorded, takes {ours} us" in text
     assert f"the fastest other master that records takes {other} us" in text
     assert f"with native FMUs, {ours} us each; {int(run) / 1000.0:.2g} s in total" in text
@@ -303,8 +293,7 @@ def test_the_readme_quotes_the_benchmarks() -> None:
 def test_the_page_on_scenes_quotes_the_cost_of_isolation() -> None:
     rows = re.findall(r"^\| native \| \w+ \| [^|]+ \| [^|]+ \| (\S+) \|$", BENCHMARKS, re.M)
     low, high = sorted(round(float(each)) for each in rows)
-    text = " ".join((HOUSE / "docs" / "scenes.md").read_text().split())
-    assert f"Isolation takes {low} to {high} us per step and FMU" in text
+    assert f"Isolation takes {low} to {high} us per step and FMU" in prose(HOUSE / "docs" / "scenes.md")
 
 
 SOURCES = HOUSE / "docs" / "sources.md"

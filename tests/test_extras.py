@@ -31,6 +31,8 @@ kind = "lowest_margin"
 bound = 0.1
 """
 SWEEP = 'scene = "scene.toml"\n[grid]\n"shaft.speed" = ["500 rpm"]\n'
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+BASE = {Requirement(text).name for text in PROJECT["dependencies"]}
 FILES = {
     "scene.toml": SCENE,
     "sweep.toml": SWEEP,
@@ -100,16 +102,14 @@ def imported(path: Path) -> set[str]:
 
 
 def test_extras_are_what_the_project_declares() -> None:
-    declared = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    base = {Requirement(text).name for text in declared["dependencies"]}
     extras = {
         extra: {Requirement(text).name for text in texts}
-        for extra, texts in declared["optional-dependencies"].items()
+        for extra, texts in PROJECT["optional-dependencies"].items()
     }
     assert {extra: set(packages) for extra, packages in EXTRAS.items()} == {
-        extra: packages - base for extra, packages in extras.items() if extra in EXTRAS
+        extra: packages - BASE for extra, packages in extras.items() if extra in EXTRAS
     }
-    whole = Requirement(declared["optional-dependencies"]["all"][0])
+    whole = Requirement(PROJECT["optional-dependencies"]["all"][0])
     assert whole.extras == set(EXTRAS)
     assert set(extras) - set(EXTRAS) == {"all", "foreign", "site", "test"}
 
@@ -118,10 +118,8 @@ def test_what_the_package_imports_is_installed_with_it_or_with_an_extra() -> Non
     files = [path for path in (ROOT / "src" / "loomfmu").rglob("*.py") if "template" not in path.parts]
     found = set().union(*map(imported, files)) - set(sys.stdlib_module_names) - {"loomfmu"}
     brought = {"markdown_it": "markdown-it-py", "zlib_ng": "zlib-ng", "PIL": "matplotlib"}
-    declared = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    base = {Requirement(text).name for text in declared["dependencies"]}
     names = {brought.get(name, name) for name in found}
-    assert names - base - {"pytest"} <= set(sum(EXTRAS.values(), ()))
+    assert names - BASE - {"pytest"} <= set(sum(EXTRAS.values(), ()))
 
 
 def outcomes(folder: Path, lines: Iterable[str], *shipped: Path) -> dict[str, Any]:

@@ -12,6 +12,7 @@ from packaging.utils import canonicalize_name
 import loomfmu
 
 ROOT = Path(__file__).parents[1]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 PINNED = re.compile(r"^([A-Za-z0-9_.-]+)==(\S+)", re.MULTILINE)
 
 
@@ -21,9 +22,8 @@ def pins(name: str) -> dict[str, str]:
 
 
 def test_the_pins_are_what_is_asked_for() -> None:
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    extras = [text for extra in project["optional-dependencies"].values() for text in extra]
-    for name, texts in (("run.txt", project["dependencies"]), ("test.txt", extras)):
+    extras = [text for extra in PROJECT["optional-dependencies"].values() for text in extra]
+    for name, texts in (("run.txt", PROJECT["dependencies"]), ("test.txt", extras)):
         for text in texts:
             required = Requirement(text)
             if required.name != "loomfmu":
@@ -57,13 +57,11 @@ def test_all_of_them_are_free_software() -> None:
 
 def test_the_citation_names_this_version_and_licence() -> None:
     citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     assert citation["version"] == loomfmu.__version__
-    assert (citation["license"], citation["keywords"]) == (project["license"], project["keywords"])
+    assert (citation["license"], citation["keywords"]) == (PROJECT["license"], PROJECT["keywords"])
 
 
 def test_the_workflow_tries_every_python_that_the_package_is_for() -> None:
     workflow = (ROOT / ".github" / "workflows" / "check.yml").read_text(encoding="utf-8")
     matrix = yaml.safe_load(workflow)["jobs"]["test"]["strategy"]["matrix"]
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    assert f">={matrix['python'][0]}" == project["requires-python"]
+    assert f">={matrix['python'][0]}" == PROJECT["requires-python"]

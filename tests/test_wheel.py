@@ -44,17 +44,19 @@ pytestmark = pytest.mark.skipif(
 )
 
 
-def called(*words: str | Path, cwd: Path, **environment: str) -> str:
-    done = subprocess.run(
-        list(map(str, words)),
-        cwd=cwd,
-        env=os.environ | environment,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
-    return done.stdout
+def called(
+    *words: str | Path, cwd: Path, status: int = 0, **environment: str
+) -> subprocess.CompletedProcess[str]:
+    command, given = list(map(str, words)), os.environ | environment
+    done = subprocess.run(command, cwd=cwd, env=given, capture_output=True, text=True, check=False)
+    assert done.returncode == status, done.stderr
+    return done
+
+
+def command(python: Path, folder: Path, *words: str, status: int = 0) -> subprocess.CompletedProcess[str]:
+    """A command of the wheel in a folder that has a cache of its own."""
+    own = {"LOOMFMU_CACHE": str(folder / "cache"), "PYTHONPATH": ""}
+    return called(python, "-c", COMMAND, *words, cwd=folder, status=status, **own)
 
 
 @pytest.fixture(scope="module")
@@ -90,11 +92,9 @@ def python(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.slow
 def test_the_first_run_of_a_scene_is_native(python: Path, tmp_path: Path) -> None:
     (tmp_path / "my_loom.toml").write_text(SCENE)
-    cache = {"LOOMFMU_CACHE": str(tmp_path / "cache"), "PYTHONPATH": ""}
-    found = called(python, "-c", "import loomfmu; print(loomfmu.__file__)", cwd=tmp_path, **cache)
-    assert found.startswith(str(python.parents[1]))
-    said = called(python, "-c", COMMAND, "run", "my_loom.toml", cwd=tmp_path, **cache)
-    assert "90 steps with native FMUs, " in said
+    found = called(python, "-c", "import loomfmu; print(loomfmu.__file__)", cwd=tmp_path, PYTHONPATH="")
+    assert found.stdout.startswith(str(python.parents[1]))
+    assert "90 steps with native FMUs, " in command(python, tmp_path, "run", "my_loom.toml").stdout
     assert not (tmp_path / "cache/fmus").exists()  # nothing was built
     assert not (tmp_path / "cache/stepper").exists()  # nor the stepper, which it brings
     (stepper,) = python.parents[1].rglob("shipped/*/stepper.*[!6]")
@@ -105,10 +105,10 @@ def test_the_first_run_of_a_scene_is_native(python: Path, tmp_path: Path) -> Non
 
 
 def test_the_example_runs_with_the_installed_command(python: Path, tmp_path: Path) -> None:
-    command, environment = python.with_name("loomfmu"), {"LOOMFMU_CACHE": str(tmp_path / "cache")}
-    called(command, "init", cwd=tmp_path, **environment)
-    said = called(command, "run", "wl680_3600.toml", cwd=tmp_path, **environment)
-    assert "4320 steps with native FMUs, " in said
+    installed, environment = python.with_name("loomfmu"), {"LOOMFMU_CACHE": str(tmp_path / "cache")}
+    called(installed, "init", cwd=tmp_path, **environment)
+    done = called(installed, "run", "wl680_3600.toml", cwd=tmp_path, **environment)
+    assert "4320 steps with native FMUs, " in done.stdout
 
 
 @pytest.mark.parametrize(
@@ -122,10 +122,8 @@ def test_what_needs_a_compiler_says_so_in_one_line(
     python: Path, tmp_path: Path, words: str, said: str
 ) -> None:
     (tmp_path / "my_loom.toml").write_text(SCENE)
-    call = [str(python), "-c", COMMAND, *words.split(), "my_loom.toml"]
-    environment = os.environ | {"LOOMFMU_CACHE": str(tmp_path / "cache"), "PYTHONPATH": ""}
-    done = subprocess.run(call, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
-    assert (done.returncode, done.stdout) == (2, "")
+    done = command(python, tmp_path, *words.split(), "my_loom.toml", status=2)
+    assert done.stdout == ""
     assert done.stderr == f'loomfmu: {said}: pip install "loomfmu[native]"\n'
     assert not list(tmp_path.glob("**/loom.fmu*")) and not list(tmp_path.glob("**/*.html*"))
 
@@ -134,20 +132,16 @@ def test_what_needs_a_compiler_says_so_in_one_line(
 def test_native_fmus_are_written_without_a_compiler(
     python: Path, wheel: Path, tmp_path: Path, fmi: str
 ) -> None:
-    call = ["build", "--native", "--fmi", fmi, "--platform", host(), "--output", "here", "MainShaft"]
-    called(python, "-c", COMMAND, *call, cwd=tmp_path, PYTHONPATH="")
+    words = f"build --native --fmi {fmi} --platform {host()} --output here MainShaft"
+    command(python, tmp_path, *words.split())
     with zipfile.ZipFile(wheel) as archive:
         brought = archive.read(f"loomfmu/fmi/native/shipped/fmi{fmi}/MainShaft.fmu")
     assert (tmp_path / "here/MainShaft.fmu").read_bytes() == brought
 
 
 def test_a_mechanism_of_ones_own_runs_live_and_the_command_says_so(python: Path, tmp_path: Path) -> None:
-    environment = {"LOOMFMU_CACHE": str(tmp_path / "cache"), "PYTHONPATH": ""}
-    called(python, "-c", COMMAND, "new", "PickingCam", cwd=tmp_path, **environment)
-    call = [str(python), "-c", COMMAND, "run", "picking_cam/picking_cam.toml"]
-    done = subprocess.run(call, cwd=tmp_path, env=os.environ | environment, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    assert done.stderr == (
+    command(python, tmp_path, "new", "PickingCam")
+    assert command(python, tmp_path, "run", "picking_cam/picking_cam.toml").stderr == (
         "warning: running live FMUs of PickingCam, not native ones: the compiler that builds it is not"
         ' installed: pip install "loomfmu[native]"\n'
     )

@@ -14,56 +14,39 @@ ROWS = [("FAILS", "a long claim about something", "1 mm"), ("holds", "another", 
 ENTRIES = [("FAILS  a long claim about something", "(belt.margin)", "1 mm"), ("holds  another",)]
 
 
-def shown(width: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> list[str]:
+COLUMNS = """
+verdict  claim                         value
+FAILS    a long claim about something  1 mm
+holds    another
+"""
+FILLED = """
+FAILS  a long claim about something
+  (belt.margin) 1 mm
+holds  another
+"""
+NARROW = """
+FAILS  a long claim
+  about something
+  (belt.margin) 1 mm
+holds  another
+"""
+
+
+@pytest.mark.parametrize(("width", "text"), [(200, COLUMNS), (44, COLUMNS), (43, FILLED), (20, NARROW)])
+def test_rows_are_in_columns_or_as_entries_that_fill_the_lines(
+    width: int, text: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     monkeypatch.setenv("COLUMNS", str(width))
     printed.show(HEADINGS, ROWS, ENTRIES)
-    return capsys.readouterr().out.splitlines()
-
-
-def test_columns_are_as_wide_as_they_need_to_be(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    columns = [
-        "",
-        "verdict  claim                         value",
-        "FAILS    a long claim about something  1 mm",
-        "holds    another",
-        "",
-    ]
-    assert shown(44, monkeypatch, capsys) == columns
-    assert shown(200, monkeypatch, capsys) == columns
-
-
-def test_parts_of_an_entry_fill_the_lines(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert shown(43, monkeypatch, capsys) == [
-        "",
-        "FAILS  a long claim about something",
-        "  (belt.margin) 1 mm",
-        "holds  another",
-        "",
-    ]
-    assert shown(20, monkeypatch, capsys) == [
-        "",
-        "FAILS  a long claim",
-        "  about something",
-        "  (belt.margin) 1 mm",
-        "holds  another",
-        "",
-    ]
+    assert capsys.readouterr().out == text + "\n"
 
 
 def test_parts_of_a_stacked_entry_are_on_one_line_or_begin_one_each() -> None:
     parts = ("claim a long one about something", "A: holds", "B: FAILS")
     assert printed.as_entry(parts, 52, stacked=True) == ["  ".join(parts)]
     assert printed.as_entry(parts, 51, stacked=True) == [parts[0], "  A: holds", "  B: FAILS"]
-    assert printed.as_entry(parts, 20, stacked=True) == [
-        "claim a long one",
-        "  about something",
-        "  A: holds",
-        "  B: FAILS",
-    ]
+    narrow = ["claim a long one", "  about something", "  A: holds", "  B: FAILS"]
+    assert printed.as_entry(parts, 20, stacked=True) == narrow
 
 
 class Terminal(io.StringIO):
@@ -102,14 +85,6 @@ def test_what_a_stream_cannot_encode_is_spelt_out() -> None:
     printed.say("3 µm", to=stream)
     stream.flush()
     assert stream.buffer.getvalue() == b"3 \\xb5m\n"
-
-
-def test_tables_show_foreign_text(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setenv("COLUMNS", "80")
-    printed.show(("claim",), [("margin [/mm]\x1b[2J",)], [("margin",)])
-    assert capsys.readouterr().out == "\nclaim\nmargin [/mm]\\x1b[2J\n\n"
 
 
 def test_nothing_else_prints() -> None:

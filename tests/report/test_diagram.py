@@ -77,18 +77,14 @@ def test_a_shaft_that_turns_backwards_is_not_said_to_stand(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     text = 'revolutions = 1\nsteps_per_revolution = 90\n[loom]\n[shaft]\nspeed = "-400 rev/min"\n'
-    loomfmu.run(scenes.parse(text, "back"), output=tmp_path / "back.h5")
-    assert main(["diagram", str(tmp_path / "back.h5")]) == 2
-    assert (
-        capsys.readouterr().err.strip().endswith("there is no timing diagram, as the shaft turns backwards")
-    )
-    with Trace(tmp_path / "back.h5") as trace:
-        drawn = diagram.section(Subject([trace]))
-        assert drawn is not None and "Not drawn: the shaft turns backwards" in drawn.html
-        with pytest.raises(
-            LoomfmuError, match="the shaft turns backwards, so nothing is plotted over its angle"
-        ):
-            trace.plot("shaft.velocity", over="angle")
+    trace = loomfmu.run(scenes.parse(text, "back"), output=tmp_path / "back.h5").trace
+    assert main(["diagram", str(trace.path)]) == 2
+    said = capsys.readouterr().err.strip()
+    assert said.endswith("there is no timing diagram, as the shaft turns backwards")
+    drawn = diagram.section(Subject([trace]))
+    assert drawn is not None and "Not drawn: the shaft turns backwards" in drawn.html
+    with pytest.raises(LoomfmuError, match="turns backwards, so nothing is plotted over its angle"):
+        trace.plot("shaft.velocity", over="angle")
 
 
 @pytest.mark.parametrize(
@@ -101,9 +97,7 @@ def test_coarse_samples_are_not_shown_as_if_they_were_fine(
     trace = loomfmu.run(SIMS / "wl680_3600.toml", set=values, output=tmp_path / "coarse.h5").trace
     assert shown in opened(report.write([trace])).inner_text("#diagram")
     if steps == 24:
-        with pytest.raises(
-            LoomfmuError, match="there is no timing diagram, as the samples are up to 15° apart"
-        ):
+        with pytest.raises(LoomfmuError, match="no timing diagram, as the samples are up to 15° apart"):
             diagram.write(trace, tmp_path / "coarse.svg")
 
 
@@ -130,34 +124,22 @@ def test_a_picture_says_which_revolution_and_what_its_colours_mean(copied: Path)
     assert "buckled" not in shown and not any(each.startswith("worst value") for each in shown if each)
 
 
-def test_the_revolution_of_the_worst_failure_is_drawn(tmp_path: Path) -> None:
-    changed = {"shaft.speed": "700 rpm", "steps_per_revolution": 360}
-    trace = loomfmu.run(SIMS / "wl680_3600.toml", set=changed, output=tmp_path / "fast.h5").trace
-    failing = [each.revolution for each in trace.verdicts if not each]
-    assert trace.turns and set(failing) == {1}
-    text = diagram.write(trace, tmp_path / "fast.svg").read_text()
-    assert ": timing diagram, revolution 1</title>" in text and '<polygon class="fails"' in text
-
-
-def test_a_legend_names_what_is_drawn_and_nothing_else(tmp_path: Path) -> None:
-    trace = loomfmu.run(
-        SIMS / "wl680_3600.toml",
-        set={"shaft.speed": "700 rpm", "revolutions": 2},
-        output=tmp_path / "fast.h5",
-    ).trace
-    fails = "worst value of a claim that fails or is undecided"
-    for circular in (False, True):
-        text = diagram.write(trace, tmp_path / f"fast_{circular}.svg", 1, circular).read_text()
-        assert ">buckled</text>" in text and f">{fails}</text>" in text
-        failing = sum(not each for each in trace.verdicts)
-        assert failing and text.count('<polygon class="fails"') == failing + 1  # and the legend's own
-    page = report.write([trace]).read_text()
-    assert '<span class="swatch buckled"' in page and '<span class="swatch fails"' in page
-
-
-def test_a_page_that_shows_no_buckling_has_none_in_its_legend(demo: Trace, written: Written) -> None:
-    page = written(demo).read_text()
-    assert '<span class="swatch dwell"' in page and '<span class="swatch buckled"' not in page
+def test_a_legend_names_what_is_drawn_and_nothing_else(
+    demo: Trace, fast: Trace, written: Written, tmp_path: Path
+) -> None:
+    failing = [each.revolution for each in fast.verdicts if not each]
+    assert set(failing) == {1}
+    for circular in (False, True):  # of the revolution of the worst failure
+        text = diagram.write(fast, tmp_path / f"fast_{circular}.svg", None, circular).read_text()
+        assert ": timing diagram, revolution 1</title>" in text
+        assert (
+            ">buckled</text>" in text and ">worst value of a claim that fails or is undecided</text>" in text
+        )
+        assert text.count('<polygon class="fails"') == len(failing) + 1  # and the legend's own
+    for trace, others in ((fast, True), (demo, False)):
+        page = written(trace).read_text()
+        assert '<span class="swatch dwell"' in page
+        assert ('<span class="swatch buckled"' in page) is ('<span class="swatch fails"' in page) is others
 
 
 def test_no_two_things_have_one_colour(whole: Trace, yarn: Trace) -> None:
@@ -198,10 +180,8 @@ def test_a_revolution_without_worst_values_says_where_they_are(
 
 
 def test_a_report_without_claims_has_no_row_for_them(tmp_path: Path) -> None:
-    lines = (SIMS / "wl680_3600.toml").read_text().partition("[[claims]]")[0]
-    (tmp_path / "plain.toml").write_text(lines)
-    trace = loomfmu.run(tmp_path / "plain.toml", output=tmp_path / "plain.h5").trace
-    page = report.write([trace]).read_text()
+    scene = scenes.parse((SIMS / "wl680_3600.toml").read_text().partition("[[claims]]")[0])
+    page = loomfmu.run(scene, output=tmp_path / "plain.h5").report().read_text()
     assert ">Claims</text>" not in page and "worst value of a claim" not in page
 
 

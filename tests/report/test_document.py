@@ -7,14 +7,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from browser import NARROW, until
+from browser import until
 
-import loomfmu
 from loomfmu import LoomfmuError, report
 from loomfmu.cli import main
-from loomfmu.cosim.scenes.scene import parse
-from loomfmu.report.document import MARK, page
-from loomfmu.report.section import Subject, embedded
+from loomfmu.report.document import page
+from loomfmu.report.section import Subject
 from loomfmu.traces import Trace
 
 Open = Callable[..., Any]
@@ -47,6 +45,8 @@ def test_the_cursor_follows_slider_keys_and_play(demo_page: Path, opened: Open) 
     where = lambda: found.evaluate("loomfmu.position")  # noqa: E731
     found.keyboard.press("End")
     assert where() == found.evaluate("loomfmu.last")
+    assert found.inner_text("#cursor-place").startswith("rev. 3, 360.0°")
+    assert found.inner_text("#diagram-revolution") == "3"
     found.keyboard.press("Home")
     found.keyboard.press("ArrowRight")
     assert where() == pytest.approx(0.0174533, rel=1e-5)
@@ -58,24 +58,6 @@ def test_the_cursor_follows_slider_keys_and_play(demo_page: Path, opened: Open) 
     kept = where()
     found.wait_for_timeout(100)
     assert where() == kept
-
-
-@pytest.mark.few(1)
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_nothing_stands_out_at_the_side_of_a_narrow_screen(
-    demo_page: Path, opened: Open, scheme: str
-) -> None:
-    found = opened(demo_page, NARROW, color_scheme=scheme)
-    assert found.evaluate("document.documentElement.scrollWidth") == NARROW[0]
-
-
-def test_the_command_names_its_page_as_the_trace_was_named(
-    demo: Trace, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    os.link(demo.path, tmp_path / "demo.h5")
-    monkeypatch.chdir(tmp_path)
-    assert main(["report", "demo.h5"]) == 0
-    assert capsys.readouterr().out == "written: demo.html\n"
 
 
 def test_it_is_small_enough_to_mail(demo_page: Path) -> None:
@@ -93,73 +75,44 @@ def test_foreign_text_is_shown_and_never_run(
     assert opened(path).title() == nasty
 
 
-def test_data_cannot_end_the_element_they_stand_in() -> None:
-    assert "<" not in embedded({"a": ["</script>", float("nan"), float("inf")]})
-
-
-def test_the_command_writes_it_beside_the_trace(
-    demo: Trace, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+def test_the_command_writes_it_beside_the_trace_and_replaces_nothing_else(
+    copied: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    copy = tmp_path / "copy.h5"
-    os.link(demo.path, copy)
-    assert main(["report", str(copy)]) == 0
-    assert capsys.readouterr().out.strip() == f"written: {tmp_path / 'copy.html'}"
-    assert main(["report", str(copy)]) == 0  # one of ours is replaced
-    (tmp_path / "copy.html").write_text("my notes")
-    assert main(["report", str(copy)]) == 2
-    assert (tmp_path / "copy.html").read_text() == "my notes"
-    assert main(["report", str(copy), "--output", str(copy), "--force"]) == 2
-    assert capsys.readouterr().err.strip().endswith("(it is an input of this command)")
+    monkeypatch.chdir(copied.parent)
+    os.link("demo.h5", "new.h5")
+    page = Path("demo.html")
+    assert main(["report", "demo.h5"]) == 0
+    assert capsys.readouterr().out == "written: demo.html\n"
+    assert main(["report", "demo.h5"]) == 0  # one of ours is replaced
+    page.write_text("my notes")
+    assert main(["report", "demo.h5", "new.h5"]) == 0
+    assert capsys.readouterr().out.endswith("written: demo_and_new.html\n")
+    for arguments, reason in {
+        "": "--force (overwrite=True in Python) replaces it",
+        "--output demo.h5 --force": "(it is an input of this command)",
+        "--output x.pdf": "ends in .html; name it x.html, and print the page to PDF in a browser",
+    }.items():
+        assert main(["report", "demo.h5", *arguments.split()]) == 2
+        assert capsys.readouterr().err.strip().endswith(reason)
+    assert page.read_text() == "my notes" and not Path("x.pdf").exists()
 
 
-def test_the_report_of_two_traces_leaves_that_of_the_first(
-    demo: Trace, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+def test_a_report_of_two_traces_says_what_is_of_the_first(
+    demo: Trace, fast: Trace, written: Callable[..., Path], opened: Open
 ) -> None:
-    names = [str(tmp_path / name) for name in ("worn.h5", "new.h5")]
-    for name in names:
-        os.link(demo.path, name)
-    (tmp_path / "worn.html").write_text(MARK)
-    assert main(["report", *names]) == 0
-    assert capsys.readouterr().out.strip() == f"written: {tmp_path / 'worn_and_new.html'}"
-    assert (tmp_path / "worn.html").read_text() == MARK
-
-
-def test_a_page_is_not_written_under_the_name_of_another_format(
-    demo: Trace, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert main(["report", str(demo.path), "--output", str(tmp_path / "x.pdf")]) == 2
-    said = capsys.readouterr().err.strip()
-    assert said.endswith("ends in .html; name it x.html, and print the page to PDF in a browser")
-    assert not (tmp_path / "x.pdf").exists()
-
-
-def test_the_end_of_a_run_is_the_end_of_its_last_revolution(demo_page: Path, opened: Open) -> None:
-    found = opened(demo_page)
-    found.keyboard.press("End")
-    assert found.inner_text("#cursor-place").startswith("rev. 3, 360.0°")
-    assert found.inner_text("#diagram-revolution") == "3"
-
-
-def test_a_report_of_two_traces_says_what_is_of_the_first(demo: Trace, tmp_path: Path, opened: Open) -> None:
-    copy = tmp_path / "copy.h5"
-    os.link(demo.path, copy)
-    found = opened(report.write([demo, copy], tmp_path / "both.html"))
+    found = opened(written(demo, fast))
     for section in ("diagram", "motion", "provenance"):
         assert "Of the first trace, demo.h5." in found.inner_text(f"#{section}")
     for section in ("claims", "plots"):
         assert "Of the first trace" not in found.inner_text(f"#{section}")
 
 
-def test_a_report_of_two_traces_judges_both(demo: Trace, tmp_path: Path) -> None:
-    text = '[loom]\nmachine = "WL680-3600"\nhead = "G6300 left"\n[[claims]]\nkind = "lowest_margin"\n'
-    failing = loomfmu.run(
-        parse(f"revolutions = 1\n{text}bound = 0.9\n"), output=tmp_path / "failing.h5"
-    ).trace
-    for traces in ([demo, failing], [failing, demo]):
-        page = report.write(traces, tmp_path / "both.html").read_text()
+def test_a_report_of_two_traces_judges_both(demo: Trace, fast: Trace, written: Callable[..., Path]) -> None:
+    for traces in ([demo, fast], [fast, demo]):
+        page = written(*traces).read_text()
         outcomes = dict(re.findall(r'class="outcome (\w+)"><span [^>]*></span>([^<]*)<', page))
-        assert outcomes == {"holds": "demo.h5: All 6 claims hold", "fails": "failing.h5: 1 of 1 claims fails"}
-        assert page.count(">FAILS</td>") == 1 and page.count('<table class="claims">') == 2
+        assert outcomes == {"holds": "demo.h5: All 6 claims hold", "fails": "fast.h5: 2 of 6 claims fail"}
+        assert page.count(">FAILS</td>") == 2 and page.count('<table class="claims">') == 2
 
 
 def test_without_a_trace_there_is_nothing_to_report() -> None:

@@ -2,17 +2,15 @@
 
 import math
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-import loomfmu
 from loomfmu.report.occasions import Occasions, positive
 from loomfmu.report.section import Subject
 from loomfmu.traces import Trace
 
-SIMS = Path(__file__).parents[2] / "sims"
+PARTS = ("dwells", "changes")  # of the revolution of a frame
 
 
 def degrees(found: list[tuple[float, float]]) -> list[tuple[float, float]]:
@@ -27,10 +25,8 @@ def test_the_window_of_risk_is_the_published_one(demo: Trace) -> None:
     assert back == pytest.approx((360.0 - 103.9, 360.0 - 92.5), abs=0.05)
 
 
-def test_the_belt_is_buckled_at_and_beyond_its_critical_load(demo: Trace, tmp_path: Path) -> None:
+def test_the_belt_is_buckled_at_and_beyond_its_critical_load(demo: Trace, fast: Trace) -> None:
     assert Occasions(Subject([demo])).revolution(2).intervals["belt", "buckled"] == []
-    values = {"shaft.speed": "700rpm", "revolutions": 1}
-    fast = loomfmu.run(SIMS / "wl680_3600.toml", set=values, output=tmp_path / "fast.h5").trace
     along, load = np.degrees(fast.shaft_angle), 1.0 - fast["belt.margin"]
     (first, last) = degrees(Occasions(Subject([fast])).revolution(1).intervals["belt", "buckled"])
     beyond = along[load >= 1.0]
@@ -70,16 +66,12 @@ def test_each_rapier_is_in_the_shed_by_its_own_belt(whole: Trace) -> None:
     assert bars["weft_2"] == ["-", "weft_2.travel", "belt_2.idle_travel"]
 
 
-def test_the_dwell_is_the_one_that_the_drive_computes(demo: Trace) -> None:
-    ((low, high),) = Occasions(Subject([demo])).revolution(2).intervals["heald_1", "dwells"]
+def test_the_dwell_is_the_one_that_the_drive_computes_and_the_frame_changes_in_the_rest(demo: Trace) -> None:
+    intervals = Occasions(Subject([demo])).revolution(2).intervals
+    dwells, changes = (sum(high - low for low, high in intervals["heald_1", what]) for what in PARTS)
     # both edges on straight lines between samples of a quarter degree
-    assert high - low == pytest.approx(demo["dobby.dwell_angle"][-1], abs=math.radians(1e-3))
-
-
-def test_dwells_and_changes_fill_the_revolution(demo: Trace) -> None:
-    revolution = Occasions(Subject([demo])).revolution(2)
-    parts = [pair for what in ("dwells", "changes") for pair in revolution.intervals["heald_1", what]]
-    assert sum(high - low for low, high in parts) == pytest.approx(2.0 * math.pi, rel=1e-12)
+    assert dwells == pytest.approx(demo["dobby.dwell_angle"][-1], abs=math.radians(1e-3))
+    assert dwells + changes == pytest.approx(2.0 * math.pi, rel=1e-12)
 
 
 def test_curves_go_from_end_to_end_of_a_revolution(demo: Trace, whole: Trace) -> None:
@@ -107,8 +99,5 @@ def test_intervals_of_a_sine_are_its_half_waves() -> None:
     found = positive(along, np.sin(along - 0.5))
     expected = [(0.5, 0.5 + np.pi), (0.5 + 2.0 * np.pi, 0.5 + 3.0 * np.pi)]
     np.testing.assert_allclose(found, expected, atol=1e-9)  # a chord of 6e-4 rad: off by its cube
-
-
-def test_nothing_positive_has_no_interval() -> None:
     assert positive(np.arange(5.0), -np.ones(5)) == []
     assert positive(np.arange(5.0), np.ones(5)) == [(0.0, 4.0)]

@@ -15,13 +15,14 @@ import matplotlib
 import numpy as np
 import pytest
 from browser import NARROW, until
+from made_traces import made
 
 from loomfmu import LoomfmuError
 from loomfmu.cli import main
 from loomfmu.report import pictures, plots
 from loomfmu.report.section import Subject
 from loomfmu.report.templates import text
-from loomfmu.traces import Channel, Trace, TraceWriter
+from loomfmu.traces import Trace
 
 Open = Callable[..., Any]
 Written = Callable[..., Path]
@@ -30,14 +31,8 @@ SIMS = Path(__file__).parents[2] / "sims"
 
 def recorded(path: Path, reals: np.ndarray, counts: np.ndarray) -> Trace:
     """A trace of reals r0, r1, ... [mm] and a count, over time alone."""
-    channels = [Channel("a", f"r{k}", "m", "mm", "", k) for k in range(reals.shape[1])]
-    channels.append(Channel("a", "count", "1", "1", "", 0, real=False))
-    writer = TraceWriter(path, {"title": "t", "software": "s"}, channels, {"a": {"fmu": "A"}})
-    for start in range(0, len(reals), 50_000):
-        rows = slice(start, start + 50_000)
-        times = np.arange(len(reals))[rows] * 1e-3
-        writer.append(times, np.zeros(len(times)), reals[rows], counts[rows, None].astype("i4"))
-    return writer.complete([])
+    signals = {f"a.r{k}": column for k, column in enumerate(reals.T)} | {"a.count": counts.astype(int)}
+    return made(path, signals, display="mm", groups={"a": {"fmu": "A"}})
 
 
 def unpacked(packed: str) -> np.ndarray:
@@ -218,12 +213,13 @@ def test_a_matplotlibrc_changes_no_picture(copied: Path, command: str, signals: 
     assert pictures[0] == pictures[1]
 
 
-def test_a_backend_of_another_environment_is_not_asked_for(copied: Path) -> None:
+def test_a_backend_of_another_environment_is_not_asked_for(copied: Path, fast: Trace) -> None:
     """As a notebook of another environment sets it for every shell command."""
-    command = [sys.executable, "-m", "loomfmu.cli", "plot", str(copied), "belt.margin", "--output", "a.png"]
+    arguments = ["plot", copied.name, str(fast.path), "belt.margin", "--over", "time"]
     environment = os.environ | {"MPLBACKEND": "module://matplotlib_inline.backend_inline"}
+    command = [sys.executable, "-m", "loomfmu.cli", *arguments]
     done = subprocess.run(command, cwd=copied.parent, env=environment, capture_output=True, text=True)
-    assert (done.returncode, done.stdout) == (0, "written: a.png\n"), done.stderr
+    assert (done.returncode, done.stdout) == (0, "written: demo_plot.png\n"), done.stderr  # beside its trace
 
 
 def test_a_pattern_draws_all_signals_that_it_names(copied: Path) -> None:
@@ -233,14 +229,6 @@ def test_a_pattern_draws_all_signals_that_it_names(copied: Path) -> None:
     for output, names in zip(pictures, (["heald_*.lift"], healds), strict=True):
         assert main(["plot", str(copied), *names, "--output", str(output)]) == 0
     assert pictures[0].read_bytes() == pictures[1].read_bytes()
-
-
-def test_a_picture_lies_beside_its_trace(
-    copied: Path, fast: Trace, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(copied.parent)
-    assert main(["plot", copied.name, str(fast.path), "belt.margin", "--over", "time"]) == 0
-    assert capsys.readouterr().out == "written: demo_plot.png\n"
 
 
 def test_a_range_shows_a_dip_beside_the_bound_of_its_claim(

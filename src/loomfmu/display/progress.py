@@ -4,6 +4,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from time import monotonic
+from typing import Any
 
 from .notebook import text
 from .printed import safe
@@ -40,7 +41,7 @@ def _on_terminal(title: str, total: int, done: int) -> Iterator[Advance]:
 
 
 @contextmanager
-def _in_notebook(display: Callable[..., "_Handle"], title: str, total: int, done: int) -> Iterator[Advance]:
+def _in_notebook(display: Callable[..., Any], title: str, total: int, done: int) -> Iterator[Advance]:
     """A bar that needs no widgets: rich's own needs ipywidgets in a notebook."""
 
     def bar() -> _Html:
@@ -63,7 +64,7 @@ def _in_notebook(display: Callable[..., "_Handle"], title: str, total: int, done
         handle.update(_Html("", ""))
 
 
-def _display() -> Callable[..., "_Handle"] | None:
+def _display() -> Callable[..., Any] | None:
     """Return IPython's `display` if this process belongs to a notebook, else None."""
     ipython = sys.modules.get("IPython")  # a notebook has imported it
     shell = ipython.get_ipython() if ipython is not None else None
@@ -72,13 +73,6 @@ def _display() -> Callable[..., "_Handle"] | None:
     from importlib import import_module
 
     return import_module("IPython.display").display  # type: ignore[no-any-return]
-
-
-class _Handle:
-    """The handle that IPython's `display` returns for something that is shown and may change."""
-
-    def update(self, shown: object) -> None:
-        """Show this in its place."""
 
 
 class _Html:

@@ -36,13 +36,7 @@ MARK = "<!DOCTYPE html>\n<!-- a page of loomfmu -->\n"
 PAGE = starts_with("a page of loomfmu", MARK.encode(), suffix=".html", advice=PRINT)
 Rows = dict[str, tuple[int, Variable]]  # the variables of the module, by name, with their numbers
 POLICY = " 'wasm-unsafe-eval'"
-SCRIPTS = (
-    "live_steps.js",
-    "live.js",
-    "live_rules.js",
-    "live_judge.js",
-    "live_claims.js",
-)
+SCRIPTS = ("live_steps.js", "live.js", "live_rules.js", "live_judge.js", "live_claims.js")
 
 
 def write(

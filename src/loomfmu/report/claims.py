@@ -1,7 +1,5 @@
 """The verdict at a glance, then each claim with how far it is from its bound, and where."""
 
-from typing import Any
-
 from ..traces import Trace, Verdict
 from ..traces.verdict import FAILS, UNDECIDED
 from ..traces.verdict import outcome as counted
@@ -17,7 +15,7 @@ def section(subject: Subject) -> Section:
             "label": label if several else "",
             "outcome": outcome(trace.verdicts, trace.judged),
             "word": _word(trace),
-            "rows": [_row(subject, verdict) for verdict in trace.verdicts],
+            "rows": [(each, _distance(each), subject.position(each)) for each in trace.verdicts],
         }
         for label, trace in zip(labels(subject.traces), subject.traces, strict=True)
     ]
@@ -40,22 +38,6 @@ def outcome(verdicts: list[Verdict], judged: bool) -> str:
     if not all(verdicts):
         return counted(verdicts)
     return "The claim holds" if len(verdicts) == 1 else f"All {len(verdicts)} claims hold"
-
-
-def _row(subject: Subject, verdict: Verdict) -> dict[str, Any]:
-    return {
-        "word": verdict.word,
-        "mark": "fails" if verdict.word == FAILS else verdict.word,
-        "claim": verdict.claim,
-        "signal": verdict.signal,
-        "worst": verdict.shown(verdict.worst),
-        "bound": verdict.shown(verdict.bound),
-        "distance": _distance(verdict),
-        "error": verdict.shown_error,
-        "place": verdict.place,
-        "position": subject.position(verdict),
-        "note": verdict.note,
-    }
 
 
 def _distance(verdict: Verdict) -> str:

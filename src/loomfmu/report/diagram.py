@@ -36,6 +36,11 @@ class Mark:
     holds: bool
     text: str
 
+    def drawn(self, x: float, top: float, bottom: float) -> Shape:
+        """A triangle at a place [px]."""
+        tip = triangle(x, top, bottom, self.holds)
+        return Shape(tip, "holds" if self.holds else "fails", title=self.text)
+
 
 def section(subject: Subject) -> Section | None:
     """The diagram with all revolutions that differ, of which the cursor chooses; None if no shaft turns."""
@@ -90,13 +95,7 @@ def section(subject: Subject) -> Section | None:
 def _layout(rows: Sequence[Row]) -> dict[str, Any]:
     """Return rules, places and sizes of the rows, with which a script draws them as this module does."""
     width = (OUTER - INNER) / len(rows)
-    return {
-        "rows": [asdict(row) for row in rows],
-        "top": TOP,
-        "row": ROW,
-        "outer": OUTER,
-        "width": width,
-    }
+    return {"rows": [asdict(row) for row in rows], "top": TOP, "row": ROW, "outer": OUTER, "width": width}
 
 
 def write(
@@ -223,9 +222,7 @@ def straight(
             for low, high in revolution.intervals[row.name, bar.label]:
                 x0, x1 = _x(low), _x(high)
                 box = [(x0, top + 6.0), (x1, top + 6.0), (x1, top + ROW - 4.0), (x0, top + ROW - 4.0)]
-                drawing.append(
-                    Shape(box, bar.role, title=f"{row.label} {bar.label}: {_degrees((low, high))}")
-                )
+                drawing.append(Shape(box, bar.role, title=_title(row, bar, (low, high))))
         if row.name in revolution.curves:
             drawing.append(Shape(list(_curve(revolution, row, top)), "curve", filled=False))
     top = TOP + ROW * len(rows)
@@ -234,8 +231,7 @@ def straight(
     if claims and not marks:
         drawing.append(Text((LEFT + 8.0, top + 0.65 * ROW), elsewhere, "faint elsewhere"))
     for mark in marks:
-        tip = triangle(_x(mark.angle), top + 4.0, top + ROW - 6.0, mark.holds)
-        drawing.append(Shape(tip, "holds" if mark.holds else "fails", title=mark.text))
+        drawing.append(mark.drawn(_x(mark.angle), top + 4.0, top + ROW - 6.0))
     return drawing
 
 
@@ -264,12 +260,9 @@ def round_(rows: Sequence[Row], revolution: Revolution, marks: Sequence[Mark]) -
         for bar in row.bars:
             for low, high in revolution.intervals[row.name, bar.label]:
                 sector = ring(CENTRE, outer - 0.85 * width, outer - 0.15 * width, low, high)
-                drawing.append(
-                    Shape(sector, bar.role, title=f"{row.label} {bar.label}: {_degrees((low, high))}")
-                )
+                drawing.append(Shape(sector, bar.role, title=_title(row, bar, (low, high))))
         drawing.append(Text((CENTRE[0] + 3.0, CENTRE[1] - outer + 0.5 * width + 4.0), row.label, "text"))
     for mark in marks:
         x, y = on_circle(CENTRE, OUTER + 9.0, mark.angle)
-        tip = triangle(x, y - 6.0, y + 6.0, mark.holds)
-        drawing.append(Shape(tip, "holds" if mark.holds else "fails", title=mark.text))
+        drawing.append(mark.drawn(x, y - 6.0, y + 6.0))
     return drawing

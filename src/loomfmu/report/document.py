@@ -5,9 +5,6 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from ..errors import LoomfmuError
 from ..files import check_target, short_stem, starts_with, write_file
 from ..traces import Comparison, Trace
@@ -16,7 +13,7 @@ from .diagram import section as diagram
 from .drawings import section as motion
 from .plots import section as plots
 from .provenance import section as provenance
-from .section import Section, Subject, embedded, labels
+from .section import Section, Subject, embedded, labels, spread
 from .templates import template, text
 
 MARK = "<!DOCTYPE html>\n<!-- a report of loomfmu -->\n"
@@ -107,14 +104,9 @@ def assembled(
 
 def _axis(subject: Subject) -> dict[str, Any]:
     """Return the axis of the cursor: a few positions with their times."""
-    places = _spread(len(subject.positions), CURSOR_POINTS)
+    places = spread(len(subject.positions), CURSOR_POINTS)
     return {
         "turns": subject.turns,
         "positions": subject.positions[places],
         "times": subject.trace.time[places],
     }
-
-
-def _spread(count: int, most: int) -> NDArray[np.int64]:
-    """Places in a row, at most so many, the first and the last among them."""
-    return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(np.int64))

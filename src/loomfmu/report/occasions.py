@@ -78,11 +78,8 @@ class Occasions:
     def rows(self) -> list[Row]:
         """One row for each mechanism that has something to show, in the order of the weft's way."""
         trace = self.subject.trace
-        rows: list[Row] = []
-        for fmu, make in MAKERS:
-            for instance in sorted((name for name, its in trace.fmus.items() if its == fmu), key=in_order):
-                rows += make(trace, instance)
-        return rows
+        made = (make(trace, name) for fmu, needed, make in MAKERS for name in instances(trace, fmu, *needed))
+        return [row for row in made if row]
 
     @cached_property
     def _bars(self) -> dict[tuple[str, str], Rule]:
@@ -154,6 +151,16 @@ def in_order(name: str) -> tuple[str, int]:
     return (stem, int(number)) if number.isdigit() else (name, 0)
 
 
+def instances(trace: Trace, fmu: str, *variables: str) -> list[str]:
+    """Instances of an FMU that record all of some variables, heald_2 before heald_10."""
+    found = (
+        name
+        for name, its in trace.fmus.items()
+        if its == fmu and all(f"{name}.{each}" in trace for each in variables)
+    )
+    return sorted(found, key=in_order)
+
+
 def positive(along: Floats, values: Floats) -> list[Interval]:
     """Intervals in which values on straight lines between their places are positive.
 
@@ -186,38 +193,30 @@ def _from_end(heald: str) -> Rule:
     return ["min", f"{heald}.lift", ["-", f"{heald}.stroke", f"{heald}.lift"]]
 
 
-def _has(trace: Trace, instance: str, *variables: str) -> bool:
-    return all(f"{instance}.{variable}" in trace for variable in variables)
-
-
-def _rapier(trace: Trace, weft: str) -> Iterator[Row]:
+def _rapier(trace: Trace, weft: str) -> Row:
     travel = f"{weft}.travel"
-    if travel not in trace:
-        return
-    belts = [name for name, fmu in trace.fmus.items() if fmu == "BeltMonitor"]
+    belts = instances(trace, "BeltMonitor")
     belts.sort(key=lambda belt: trace.wires.get(f"{belt}.travel") != travel)  # its own one first
     bars = [Bar("in the shed", "weft", ["-", travel, f"{belt}.idle_travel"]) for belt in belts[:1]]
     label = _of_both(trace, travel, "head") or _numbered("Rapier", weft, alone="Rapier head")
-    yield Row(weft, label, tuple(bars), _share(travel))
+    return Row(weft, label, tuple(bars), _share(travel))
 
 
-def _belt(trace: Trace, belt: str) -> Iterator[Row]:
+def _belt(trace: Trace, belt: str) -> Row:
     free, force = f"{belt}.free_length", f"{belt}.axial_force"
-    if free not in trace:
-        return
     bars = [Bar("outside its guide", "belt", free)]
     if force in trace:
         bars.append(Bar("outside and compressed", "risk", ["min", _scaled(free), _scaled(force)]))
     if f"{belt}.margin" in trace:
         bars.append(Bar("buckled", "buckled", ["-", 0.0, f"{belt}.margin"]))
     label = _of_both(trace, trace.wires.get(f"{belt}.travel", ""), "belt") or _numbered("Belt", belt)
-    yield Row(belt, label, tuple(bars), _share(free))
+    return Row(belt, label, tuple(bars), _share(free))
 
 
 def _of_both(trace: Trace, travel: str, part: str) -> str:
     """Return the name of a part of giver or taker, by the travel of its head; empty for a single rapier."""
-    for name, fmu in trace.fmus.items():
-        for role in ("giver", "taker") if fmu == "WeftTransfer" else ():
+    for name in instances(trace, "WeftTransfer"):
+        for role in ("giver", "taker"):
             if travel and trace.wires.get(f"{name}.{role}_travel") == travel:
                 return f"{role.capitalize()} {part}"
     return ""
@@ -232,28 +231,23 @@ def _numbered(label: str, instance: str, alone: str = "") -> str:
     return f"{label} {number}" if number else alone or label
 
 
-def _transfer(trace: Trace, transfer: str) -> Iterator[Row]:
+def _transfer(_trace: Trace, transfer: str) -> Row:
     overlap = f"{transfer}.overlap"
-    if overlap not in trace:
-        return
     enough = Bar("heads overlap enough", "transfer", ["-", overlap, f"{transfer}.needed_overlap"])
     passed: Rule = ["max", overlap, 0.0]
-    yield Row(transfer, "Transfer", (enough,), ["/", passed, ["highest", ["max", passed, SMALL]]])
+    return Row(transfer, "Transfer", (enough,), ["/", passed, ["highest", ["max", passed, SMALL]]])
 
 
-def _brake(trace: Trace, yarn: str) -> Iterator[Row]:
+def _brake(trace: Trace, yarn: str) -> Row | None:
     brake, program = f"{yarn}.brake", f"{yarn}.brake_program_"
-    programmed = {value for name, value in trace.parameters.items() if name.startswith(program)}
-    if brake not in trace or len(programmed) < 2:
-        return
+    if len({value for name, value in trace.parameters.items() if name.startswith(program)}) < 2:
+        return None
     opened = Bar("brake opened", "brake", ["-", ["*", 0.999, f"{yarn}.brake_force"], brake])
-    yield Row(yarn, "Weft brake", (opened,), _scaled(brake))
+    return Row(yarn, "Weft brake", (opened,), _scaled(brake))
 
 
-def _frame(trace: Trace, heald: str) -> Iterator[Row]:
-    if not _has(trace, heald, "lift"):
-        return
-    dobbies = [name for name, fmu in trace.fmus.items() if fmu == "DobbyDrive"]
+def _frame(trace: Trace, heald: str) -> Row:
+    dobbies = instances(trace, "DobbyDrive")
     share: Rule = f"{dobbies[0]}.dwell_tolerance" if dobbies else 0.015
     within: Rule = ["*", share, f"{heald}.stroke"]
     bars = (
@@ -261,41 +255,38 @@ def _frame(trace: Trace, heald: str) -> Iterator[Row]:
         Bar("changes", "change", ["-", _from_end(heald), within]),
     )
     lifted: Rule = ["/", f"{heald}.lift", f"{heald}.stroke"]
-    yield Row(heald, f"Frame {heald.rpartition('_')[2]}", bars, lifted)
+    return Row(heald, f"Frame {heald.rpartition('_')[2]}", bars, lifted)
 
 
-def _shed(trace: Trace, dobby: str) -> Iterator[Row]:
-    frames = [name for name, fmu in trace.fmus.items() if fmu == "HealdFrame" and _has(trace, name, "lift")]
+def _shed(trace: Trace, dobby: str) -> Row | None:
+    frames = instances(trace, "HealdFrame", "lift")
     if not frames:
-        return
+        return None
     clear = [["-", f"{dobby}.clear_fraction", ["/", _from_end(name), f"{name}.stroke"]] for name in frames]
-    yield Row(dobby, "Shed", (Bar("all frames near their ends", "shed", ["min", *clear]),))
+    return Row(dobby, "Shed", (Bar("all frames near their ends", "shed", ["min", *clear]),))
 
 
-def _reed(trace: Trace, reed: str) -> Iterator[Row]:
+def _reed(_trace: Trace, reed: str) -> Row:
     position = f"{reed}.position"
-    if position not in trace:
-        return
     highest: Rule = ["highest", position]
     front: Rule = ["-", highest, ["*", 0.1, ["-", highest, ["lowest", position]]]]
-    yield Row(reed, "Reed", (Bar("in its front tenth", "reed", ["-", position, front]),), _share(position))
+    return Row(reed, "Reed", (Bar("in its front tenth", "reed", ["-", position, front]),), _share(position))
 
 
-def _lock(trace: Trace, lock: str) -> Iterator[Row]:
-    if not _has(trace, lock, "turn", "turn_velocity"):
-        return
+def _lock(_trace: Trace, lock: str) -> Row:
     speed: Rule = ["abs", f"{lock}.turn_velocity"]
     bars = (Bar("pawl turns", "lock", ["-", speed, ["*", 1e-6, ["highest", speed]]]),)
-    yield Row(lock, "Pattern lock", bars, _share(f"{lock}.turn"))
+    return Row(lock, "Pattern lock", bars, _share(f"{lock}.turn"))
 
 
-MAKERS: tuple[tuple[str, Callable[[Trace, str], Iterator[Row]]], ...] = (
-    ("WeftInsertion", _rapier),
-    ("WeftTransfer", _transfer),
-    ("WeftTension", _brake),
-    ("BeltMonitor", _belt),
-    ("DobbyDrive", _shed),
-    ("HealdFrame", _frame),
-    ("ReedBeatUp", _reed),
-    ("PatternLock", _lock),
+# FMUs, the variables that their rows need, and what makes a row; in the order of the weft's way
+MAKERS: tuple[tuple[str, tuple[str, ...], Callable[[Trace, str], Row | None]], ...] = (
+    ("WeftInsertion", ("travel",), _rapier),
+    ("WeftTransfer", ("overlap",), _transfer),
+    ("WeftTension", ("brake",), _brake),
+    ("BeltMonitor", ("free_length",), _belt),
+    ("DobbyDrive", (), _shed),
+    ("HealdFrame", ("lift",), _frame),
+    ("ReedBeatUp", ("position",), _reed),
+    ("PatternLock", ("turn", "turn_velocity"), _lock),
 )

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ..traces import Trace, Verdict
 from ..traces.excerpt import READ
-from .section import Section, Subject, labels
+from .section import Section, Subject, labels, spread
 from .templates import template
 
 Floats = NDArray[np.float64]
@@ -163,8 +163,7 @@ def _signal(
 
 def _along(subject: Subject, trace: Trace) -> dict[str, Any]:
     """Return time over shaft angle in a trace: its curves lie along the angle if a shaft turns."""
-    places = np.unique(np.linspace(0, trace.rows - 1, min(trace.rows, ALONG)).round().astype(np.int64))
-    turns = trace.turns
+    places, turns = spread(trace.rows, ALONG), trace.turns
     return {
         "turns": turns,
         "times": _packed(trace.time[places]),

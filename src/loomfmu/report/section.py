@@ -118,6 +118,11 @@ class Subject:
         return (verdict.revolution - 1) * TURN + verdict.angle
 
 
+def spread(count: int, most: int) -> NDArray[np.int64]:
+    """Places in a row, at most so many, the first and the last among them."""
+    return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(np.int64))
+
+
 def labels(traces: Sequence[Trace]) -> list[str]:
     """Return the names of traces in a legend: their files, with folders if two have the same name."""
     names = [trace.path.name for trace in traces]

@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 from .chunks import ROWS
-from .kinds import PARTIAL, TRACE
+from .opened import PARTIAL, TRACE
 from .reader import Trace
 from .signals import Channel, Column, Early, Recording, Signals
 from .verdict import Verdict

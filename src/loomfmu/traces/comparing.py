@@ -77,7 +77,9 @@ def compare(
     Raises:
         LoomfmuError: a trace cannot be read, has no samples, or its grid does not tell whether they differ
     """
-    one, two = traces = _opened(first), _opened(second)
+    one, two = traces = [
+        each if isinstance(each, Trace) else Trace(path_of(each, "trace")) for each in (first, second)
+    ]
     allowed = Tolerance(_share(tolerance), dict(absolute or {}))
     if isinstance(ignore, str):
         raise LoomfmuError(f'ignore = {shown(ignore)} must be a list such as ["motor.*"]')
@@ -115,9 +117,8 @@ def compare(
                 f" with the same steps, or allow a tolerance of {share}"
             )
         notes.append(f"{len(unclear)} more signals may differ by less than can be seen: {reason}")
-    names = (str(one.given), str(two.given))
     return Comparison(
-        names,
+        (str(one.given), str(two.given)),
         len(common),
         meeting.how,
         allowed.share,
@@ -145,10 +146,6 @@ def _earliest(trace: Trace, differences: Sequence[Difference]) -> Difference | N
         return each.first.time, before, -fed[instance], places.index(instance)
 
     return min(differences, key=rank, default=None)
-
-
-def _opened(given: str | Path | Trace) -> Trace:
-    return given if isinstance(given, Trace) else Trace(path_of(given, "trace"))
 
 
 def _share(tolerance: str | float) -> float:
@@ -203,7 +200,7 @@ def _difference(meeting: Meeting, signal: str, tolerance: Tolerance) -> Differen
     gap[np.isnan(gap)] = np.inf
     finite = np.abs(np.concatenate([a[np.isfinite(a)], b[np.isfinite(b)]]))
     scale = float(np.max(finite, initial=0.0))
-    allowed = tolerance.of(signal, unit, scale, exact=not _is_real(trace, signal))
+    allowed = tolerance.of(signal, unit, scale, exact=signal not in SHARED and not trace.is_real(signal))
     doubt = np.where(np.isfinite(doubt), doubt, np.inf) * (factor if meeting.base == 0 else 1.0)
     beyond = np.flatnonzero(gap > allowed + doubt)
     if not len(beyond):
@@ -220,10 +217,6 @@ def _difference(meeting: Meeting, signal: str, tolerance: Tolerance) -> Differen
         scale,
         meeting.place(worst),
     )
-
-
-def _is_real(trace: Trace, signal: str) -> bool:
-    return signal in SHARED or trace.is_real(signal)
 
 
 def _claims(first: Trace, second: Trace, tolerance: Tolerance) -> Iterator[Change]:
@@ -285,14 +278,11 @@ def _values(
                 continue
         elif a == b:
             continue
-        yield Change(
-            "value",
-            name,
-            *(
-                trace.parameter_text(name) if name in trace.parameters else "missing"
-                for trace in (first, second)
-            ),
-        )
+        yield Change("value", name, *(_value(trace, name) for trace in (first, second)))
+
+
+def _value(trace: Trace, name: str) -> str:
+    return trace.parameter_text(name) if name in trace.parameters else "missing"
 
 
 def _status(first: Trace, second: Trace) -> Iterator[Change]:

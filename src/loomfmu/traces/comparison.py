@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from .. import units
 from ..display import notebook, printed
 from ..errors import listed
+from .verdict import place_text
 
 SIGNAL_HEADINGS = ("signal", "first at", "", "", "largest difference", "relative", "at")
 CHANGE_HEADINGS = ("what", "name", "", "")
@@ -31,9 +32,7 @@ class Place:
     revolution: int | None
 
     def __str__(self) -> str:
-        if self.revolution is None:
-            return f"{self.time:.6g} s"
-        return f"{self.time:.6g} s, {math.degrees(self.angle):.3f} deg, rev. {self.revolution}"
+        return place_text(self.time, self.angle, self.revolution)
 
 
 @dataclass(frozen=True)

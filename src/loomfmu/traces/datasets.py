@@ -1,58 +1,43 @@
 """Signals as xarray datasets: along time, or folded onto one revolution of the main shaft."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping
 from numbers import Integral
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .. import units
 from ..errors import LoomfmuError, shown
-from ..extras import need
 
 Floats = NDArray[np.float64]
 TURN = 2.0 * math.pi
 WHOLE = 1e-9  # of a revolution: what a sample may be beside its end
 
 
-class Signals(Protocol):
-    """The part of `traces.signals.Signals` that a dataset needs."""
-
-    name: str
-
-    @property
-    def time(self) -> Floats: ...  # noqa: D102
-    @property
-    def shaft_angle(self) -> Floats: ...  # noqa: D102
-    def read(self, signal: str) -> NDArray[Any]: ...  # noqa: D102
-    def unit(self, signal: str) -> str: ...  # noqa: D102
-    def description(self, signal: str) -> str: ...  # noqa: D102
-
-
-def dataset(signals: Signals, names: Sequence[str], fold: bool | int) -> Any:
-    """The named signals as a dataset. Raises LoomfmuError as `Signals.to_xarray`."""
-    need("to_xarray", "xarray")
+def dataset(
+    run: str,
+    time: Floats,
+    shaft_angle: Floats,
+    signals: Mapping[str, tuple[NDArray[Any], dict[str, str]]],
+    fold: bool | int,
+) -> Any:
+    """Values and attributes of some signals as a dataset. Raises LoomfmuError as `Signals.to_xarray`."""
     import xarray
 
-    values = {name: signals.read(name) for name in names}
-    about = {name: _attributes(signals, name) for name in names}
-    angle = {"units": "rad", "long_name": "shaft angle"}
-    time = {"units": "s", "long_name": "time"}
+    of_angle = {"units": "rad", "long_name": "shaft angle"}
+    of_time = {"units": "s", "long_name": "time"}
     coordinates: dict[str, Any]
     variables: dict[str, Any]
     if fold is False:
-        coordinates = {
-            "time": ("time", signals.time, time),
-            "shaft_angle": ("time", signals.shaft_angle, angle),
-        }
-        variables = {name: ("time", values[name], about[name]) for name in names}
+        coordinates = {"time": ("time", time, of_time), "shaft_angle": ("time", shaft_angle, of_angle)}
+        variables = {name: ("time", values, about) for name, (values, about) in signals.items()}
         return xarray.Dataset(variables, coordinates)
-    turned, way = _turned(signals)
+    turned, way = _turned(run, shaft_angle)
     first, last = math.ceil(turned[0] - WHOLE), math.floor(turned[-1] + WHOLE)
     if last <= first:
-        raise LoomfmuError(f"{signals.name}: no whole revolution is recorded, so there is nothing to fold")
+        raise LoomfmuError(f"{run}: no whole revolution is recorded, so there is nothing to fold")
     count = _count(turned, first, last) if fold is True else fold
     if not isinstance(count, Integral) or int(count) < 1:
         raise LoomfmuError(f"fold = {shown(fold)} must be true or a number of angles, 1 or more")
@@ -60,40 +45,32 @@ def dataset(signals: Signals, names: Sequence[str], fold: bool | int) -> Any:
     places = (np.arange(first, last)[:, None] + (angles if way > 0 else 1.0 - angles)).ravel()
     dims, shape = ("revolution", "angle"), (last - first, count)
 
-    def folded(each: NDArray[Any]) -> NDArray[Any]:
-        return _at(turned, each, places).reshape(shape)
+    def folded(values: NDArray[Any]) -> NDArray[Any]:
+        return _at(turned, values, places).reshape(shape)
 
     begun = math.floor(turned[0] + WHOLE)
     coordinates = {
         "revolution": ("revolution", np.arange(first, last) - begun + 1),
-        "angle": ("angle", TURN * angles, angle),
-        "time": (dims, folded(signals.time), time),
+        "angle": ("angle", TURN * angles, of_angle),
+        "time": (dims, folded(time), of_time),
     }
-    variables = {name: (dims, folded(values[name]), about[name]) for name in names}
+    variables = {name: (dims, folded(values), about) for name, (values, about) in signals.items()}
     return xarray.Dataset(variables, coordinates)
 
 
-def _attributes(signals: Signals, name: str) -> dict[str, str]:
-    """The attributes that xarray itself reads from the file of a trace."""
-    unit = signals.unit(name)
-    about = {
-        "UNIT": unit,
-        "units": units.udunits(unit),
-        "long_name": name.partition(".")[2].replace("_", " "),
-    }
-    description = signals.description(name)
+def attributes(signal: str, unit: str, description: str) -> dict[str, str]:
+    """The attributes of a signal that xarray itself reads from the file of a trace."""
+    long_name = signal.partition(".")[2].replace("_", " ")
+    about = {"UNIT": unit, "units": units.udunits(unit), "long_name": long_name}
     return about | ({"COMMENT": description} if description else {})
 
 
-def _turned(signals: Signals) -> tuple[Floats, int]:
+def _turned(run: str, angle: Floats) -> tuple[Floats, int]:
     """The shaft's angle in revolutions, counted the way that it turns. Raises LoomfmuError if it does not."""
-    angle = signals.shaft_angle
     way = 1 if len(angle) and angle[-1] >= angle[0] else -1
     turned = way * angle / TURN
     if len(turned) < 2 or not np.all(np.diff(turned) > 0.0):
-        raise LoomfmuError(
-            f"{signals.name}: the shaft does not turn one way throughout, so there is nothing to fold"
-        )
+        raise LoomfmuError(f"{run}: the shaft does not turn one way throughout, so there is nothing to fold")
     return turned, way
 
 

@@ -1,4 +1,4 @@
-"""The file of a trace, opened for as long as it is read."""
+"""The file of a trace: the kinds of such files, and one of them opened for as long as it is read."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -10,12 +10,13 @@ import h5py
 
 from ..declaring.variables import SHARED
 from ..errors import LoomfmuError
-from ..files import source
+from ..files import Kind, source
 from .disk import superblock
 from .layout import Foreign, has
 from .places import place_of
 
 REQUIRED = ("title", "status", "software")  # attributes that every trace has
+SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
 
 class TraceFile:
@@ -95,6 +96,16 @@ def is_trace(path: Path) -> bool:
             return not _lacking(file)
     except (KeyError, LoomfmuError, OSError, RuntimeError):
         return False
+
+
+def _is_partial(path: Path) -> bool:
+    """Return whether a run may have left a file: if killed early, it has only reserved the space."""
+    with path.open("rb") as file:
+        return file.read(len(SIGNATURE)) in (SIGNATURE, bytes(len(SIGNATURE)))
+
+
+TRACE = Kind("a trace of loomfmu", is_trace, (".h5", ".hdf5", ".hdf"))
+PARTIAL = Kind("a partial trace of an interrupted run", _is_partial)
 
 
 def _hdf5(path: Path) -> Any:

@@ -253,7 +253,7 @@ class Trace(Signals):
         try:
             return dict(json.loads(str(self.attributes.get("set", "{}"))))
         except (RecursionError, TypeError, ValueError):
-            raise LoomfmuError(f"{self.given}: the file is damaged (its `set` is not a table)") from None
+            raise self._damaged("its `set` is not a table") from None
 
     @cached_property
     def wires(self) -> dict[str, str]:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ..declaring.variables import ALONE, Beside
 from ..errors import LoomfmuError, shown, suggestion
+from ..extras import need
 from ..units import unit
 
 Floats = NDArray[np.float64]
@@ -152,25 +153,21 @@ class Signals(ABC):
         """The recorded signal that says how far this one may be off whatever the steps, if there is one."""
         return self.beside(signal, "error")
 
-    def held(self, signal: str, sign: float) -> str | None:
-        """The recorded signal that holds the lowest value of this one so far, or with sign -1 the highest."""
-        return self.beside(signal, "lowest" if sign > 0.0 else "highest")
-
     @abstractmethod
     def parameter(self, signal: str) -> float:
         """A parameter of an instance as it was set, such as `heald_1.stroke`."""
 
-    @property
+    @cached_property
     def wires(self) -> Mapping[str, str]:
         """The output that each wired input took its values from; empty where the trace does not say."""
         return {}
 
-    @property
+    @cached_property
     def fmus(self) -> Mapping[str, str]:
         """The name of each instance's FMU, as far as it is known."""
         return {}
 
-    @property
+    @cached_property
     def own_speeds(self) -> Container[str]:
         """The instances that have a speed [rad/s] at which they turn by themselves."""
         return ()
@@ -189,9 +186,14 @@ class Signals(ABC):
         Raises:
             LoomfmuError: an unknown signal, a fold without a whole revolution, or no `loomfmu[xarray]`
         """
-        from .datasets import dataset
+        need("to_xarray", "xarray")
+        from .datasets import attributes, dataset
 
-        return dataset(self, signals or tuple(self), fold)
+        columns = {
+            name: (self.read(name), attributes(name, self.unit(name), self.description(name)))
+            for name in signals or tuple(self)
+        }
+        return dataset(self.name, self.time, self.shaft_angle, columns, fold)
 
     def description(self, signal: str) -> str:
         """Return the description of a signal."""
@@ -214,8 +216,7 @@ class Recording(Signals):
     """A run that is kept in memory.
 
     It takes blocks as a `TraceWriter` does, and keeps their arrays. `parameter` gives a parameter of an
-    instance as it was set, or None; `wires` the source of each wired input; `fmus` the FMU of each instance;
-    `own_speeds` the instances that have a speed at which they turn by themselves.
+    instance as it was set, or None; `wires`, `fmus` and `own_speeds` are those of `Signals`.
     """
 
     def __init__(
@@ -230,9 +231,7 @@ class Recording(Signals):
         self.name = name
         self._channels = {channel.signal: channel for channel in channels}
         self._parameter = parameter
-        self._wires = dict(wires)
-        self._fmus = dict(fmus)
-        self._own_speeds = own_speeds
+        self.wires, self.fmus, self.own_speeds = dict(wires), dict(fmus), own_speeds
         self._parameters: dict[str, float] = {}
         self._shared: dict[Any, Any] = {}
         self._blocks: list[tuple[Floats, Floats, Floats, Integers]] = []
@@ -251,21 +250,6 @@ class Recording(Signals):
         """The samples, without what was derived of them: addresses mean nothing in another process."""
         kept = {name: value for name, value in self.__dict__.items() if name not in DERIVED}
         return kept | {"_shared": {}}
-
-    @property
-    def wires(self) -> Mapping[str, str]:
-        """The output that each wired input took its values from."""
-        return self._wires
-
-    @property
-    def fmus(self) -> Mapping[str, str]:
-        """The name of each instance's FMU."""
-        return self._fmus
-
-    @property
-    def own_speeds(self) -> Container[str]:
-        """The instances that have a speed [rad/s] at which they turn by themselves."""
-        return self._own_speeds
 
     @property
     def shared(self) -> dict[Any, Any]:

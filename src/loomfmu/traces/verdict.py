@@ -139,9 +139,7 @@ class Verdict:
         """Time and shaft angle of the worst value as text; empty if there are none."""
         if not math.isfinite(self.time):
             return ""
-        if self.revolution is None:
-            return f"{self.time:.6g} s"
-        return f"{self.time:.6g} s, {math.degrees(self.angle):.3f} deg, rev. {self.revolution}"
+        return place_text(self.time, self.angle, self.revolution)
 
     def displayed(self, value: float) -> float:
         """One of the verdict's values in its display unit."""
@@ -190,6 +188,13 @@ class Verdict:
             return cls(**known, display_unit=stored["display"]["unit"])
         # as version 0.1.0 stored them: SI values beside the unit that people read them in
         return cls(**(known | {"unit": units.si(known["unit"])}), display_unit=known["unit"])
+
+
+def place_text(time: float, angle: float, revolution: int | None) -> str:
+    """Return a time [s] and, where a shaft turns, its angle [rad] and the revolution, as people read them."""
+    if revolution is None:
+        return f"{time:.6g} s"
+    return f"{time:.6g} s, {math.degrees(angle):.3f} deg, rev. {revolution}"
 
 
 def _finite(values: dict[str, Any]) -> dict[str, Any]:

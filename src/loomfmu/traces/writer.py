@@ -17,8 +17,7 @@ import numpy as np
 from .. import units
 from ..files import make_folder, put
 from ..version import __version__
-from .chunks import ROWS, Columns
-from .created import INTEGERS, REALS, annotate, chunk_of, dataset
+from .chunks import INTEGERS, REALS, ROWS, Columns, annotate, chunk_of, dataset
 from .disk import reserve
 from .edit import edited
 from .layout import BESIDE

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...physics.belt import LARGEST_BEND, MOST_BENT, complete_elliptic
+from ..occasions import instances
 from ..rules import TABLE, Rule, mm
-from .recorded import instances
 from .sketch import Figure, Sketch, Value, title
 from .tracks import FINEST, Tracks
 

@@ -86,10 +86,7 @@ def drive(tracks: Tracks, name: str) -> Figure | None:
 def _cycles(tracks: Tracks, name: str, places: list[list[Place]]) -> list[Point]:
     """Tracks of points over a revolution."""
     found = np.array(places)
-    return [
-        (tracks.cycle(f"{name}{n}.x", found[:, n, 0]), tracks.cycle(f"{name}{n}.y", found[:, n, 1]))
-        for n in range(found.shape[1])
-    ]
+    return [tracks.point(f"{name}{n}", found[:, n]) for n in range(found.shape[1])]
 
 
 def _wheel(sketch: Sketch, weft: WeftInsertion, name: str, at: Place, radius: float) -> None:

@@ -2,9 +2,9 @@
 
 from collections.abc import Sequence
 
+from ..occasions import instances
 from ..rules import mm
 from .belt import Belt, axis, reached, side, wheel_centre, wheel_radius, width
-from .recorded import instances
 from .sketch import Figure, Sketch, Value, title
 from .tracks import Tracks
 

@@ -1,4 +1,4 @@
-"""Recorded mechanisms: instances by their FMU, and a component with their parameters."""
+"""Recorded mechanisms as components with their parameters."""
 
 from collections.abc import Callable
 from dataclasses import fields
@@ -7,23 +7,11 @@ from typing import Any
 import numpy as np
 
 from ...errors import LoomfmuError
-from ...traces import Trace
-from ..occasions import in_order
 from .tracks import Tracks
 
 SHAFT = ("follow_shaft", "speed", "start_angle", "inputs_at_step_end")  # parameters of where the shaft stands
 AGREES = 1e-6  # m by which a recorded signal may differ from the component's
 COMPARED = 50  # samples at which they are compared
-
-
-def instances(trace: Trace, fmu: str, *variables: str) -> list[str]:
-    """Instances of an FMU that record all of some variables, heald_2 before heald_10."""
-    found = (
-        name
-        for name, its in trace.fmus.items()
-        if its == fmu and all(f"{name}.{each}" in trace for each in variables)
-    )
-    return sorted(found, key=in_order)
 
 
 def follows(tracks: Tracks, instance: str, kind: Callable[[], Any], signal: str) -> Any:

@@ -3,14 +3,13 @@
 from math import cos, sin
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...components.reed_beat_up import ReedBeatUp
 from ...physics.reed import servo_turn
 from ..rules import mm
 from ..section import TURN
 from .recorded import follows
-from .sketch import Figure, Point, Sketch, Value, title
+from .sketch import Figure, Sketch, Value, title
 from .tracks import Tracks
 
 Place = tuple[float, float]
@@ -41,8 +40,7 @@ def beat_up(tracks: Tracks, name: str) -> Figure | None:
         return None
     found = np.array([joints(reed, angle) for angle in TURN * tracks.shares])
     pin, end, arm, tip = (
-        _cycle(tracks, f"{name}.{joint}", found[:, n])
-        for n, joint in enumerate(("pin", "end", "arm", "reed"))
+        tracks.point(f"{name}.{joint}", found[:, n]) for n, joint in enumerate(("pin", "end", "arm", "reed"))
     )
     crank, radius = (1000.0 * reed.crank_x, 1000.0 * reed.crank_y), 1000.0 * reed.crank_length
     xs = [0.0, crank[0] - radius, crank[0] + radius, *found[:, :, 0].flat]
@@ -73,8 +71,3 @@ def beat_up(tracks: Tracks, name: str) -> Figure | None:
         [Value("reed behind its front limit", f"{name}.back", "mm")],
         "The linkage is to scale; the height of the reed is schematic.",
     )
-
-
-def _cycle(tracks: Tracks, name: str, places: NDArray[np.float64]) -> Point:
-    """A point that moves over a revolution."""
-    return tracks.cycle(f"{name}.x", places[:, 0]), tracks.cycle(f"{name}.y", places[:, 1])

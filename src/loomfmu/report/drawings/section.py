@@ -2,12 +2,12 @@
 
 from math import degrees, floor, radians
 
+from ..occasions import instances
 from ..section import COARSEST, TURN, Section, Subject
 from ..templates import template
 from .belt import MOVING, between, shapes, tracked
 from .drive import drive
 from .rapiers import across
-from .recorded import instances
 from .reed import beat_up
 from .shed import frames, shed
 from .sketch import Figure

@@ -2,8 +2,8 @@
 
 from ...components.warp_tension import WarpTension
 from ...traces.verdict import SHED_OPENING
+from ..occasions import instances
 from ..rules import Rule, mm
-from .recorded import instances
 from .sketch import Figure, Sketch, Value
 from .tracks import Tracks
 

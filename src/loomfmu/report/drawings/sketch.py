@@ -20,7 +20,6 @@ class Value:
     label: str
     track: str
     unit: str
-    digits: int = 1
     text: str = ""  # at the still position
 
 
@@ -157,7 +156,7 @@ class Sketch:
         self, name: str, title: str, sentence: str, values: Sequence[Value] = (), note: str = ""
     ) -> Figure:
         """The drawing as a figure of the page."""
-        shown = [replace(each, text=f"{self.tracks.at(each.track):.{each.digits}f}") for each in values]
+        shown = [replace(each, text=f"{self.tracks.at(each.track):.1f}") for each in values]
         return Figure(name, title, sentence, self.height, self.svg, shown, note)
 
 

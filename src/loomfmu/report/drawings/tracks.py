@@ -124,9 +124,13 @@ class Tracks:
         """Let a length move, in mm; returns the name."""
         return self.add(f"{signal}_mm", mm(signal), finer=finer)
 
-    def cycle(self, name: str, values: Any, step: float = 0.01) -> str:
+    def cycle(self, name: str, values: Any) -> str:
         """Let a name move as values of the keyframes, the same in each window; returns the name."""
-        return self._keep(name, np.asarray(values)[None, :], step)
+        return self._keep(name, np.asarray(values)[None, :], 0.01)
+
+    def point(self, name: str, places: NDArray[np.float64]) -> tuple[str, str]:
+        """Let a point move as places of the keyframes, the same in each window; returns its names."""
+        return self.cycle(f"{name}.x", places[:, 0]), self.cycle(f"{name}.y", places[:, 1])
 
     def _keep(self, name: str, values: NDArray[np.float64], step: float, rule: Rule | None = None) -> str:
         steps = np.clip(np.nan_to_num(np.round(values / step)), -LARGEST, LARGEST)

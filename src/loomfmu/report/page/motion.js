@@ -39,7 +39,7 @@
     ...followers("turn", (element, [angle, x, y]) => element.setAttribute("transform", `rotate(${angle} ${x} ${y})`)),
     ...followers("shown", (element, [amount]) => element.toggleAttribute("hidden", !(amount > 0))),
     ...followers("bow", (element, at) => element.setAttribute("points", bow(...at))),
-    ...followers("value", (element, [amount]) => { element.textContent = amount.toFixed(Number(element.dataset.digits)); }),
+    ...followers("value", (element, [amount]) => { element.textContent = amount.toFixed(1); }),
   ];
   function draw(position) {
     const turns = (position - first) / span;
