@@ -747,8 +747,8 @@ def small_disk(tmp_path: Path):
 
 def test_a_trace_that_does_not_fit_is_refused_before_the_run(tmp_path: Path, small_disk: Path) -> None:
     done = subprocess.run(RUN, cwd=tmp_path, capture_output=True, text=True, timeout=60)
-    # 4,320,001 samples of time, shaft angle, margin and the shaft's three: 48 bytes each
-    said = r"\(it takes up to 207\.4 MB, and the disk has 3\.\d MB free\)\n"
+    # 528 blocks of 8192 samples of time, angle, margin and the shaft's three: 48 bytes each, and book-keeping
+    said = r"\(it takes up to 255\.3 MB, and the disk has 3\.\d MB free\)\n"
     assert re.fullmatch(rf"loomfmu: out/long\.h5: cannot be written {said}", done.stderr)
     assert (done.returncode, done.stdout) == (2, "")
     assert [path.name for path in small_disk.iterdir()] == ["long.h5"]

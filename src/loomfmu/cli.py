@@ -7,14 +7,18 @@ import os
 import sys
 from collections.abc import Callable, Sequence
 
-from .commands import parser, with_negative
-from .commands.status import status_of
+INTERRUPTED = 130
 
 atexit.register(gc.freeze)  # last of all: Python ends without a search for garbage, 60 ms of a run
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command and return its exit status."""
+    try:  # Ctrl-C may come while the commands are imported, which takes a quarter of a second
+        from .commands import parser, with_negative
+        from .commands.status import status_of
+    except KeyboardInterrupt:
+        return INTERRUPTED
     options = argparse.Namespace(debug=False)
     # numpy starts a thread for each core, which takes 40 ms; nothing here has matrices for so many
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")

@@ -550,6 +550,48 @@ def test_a_rate_that_comes_from_elsewhere_decides_nothing(cut: str, inputs: Any,
     assert found.word == "undecided" and why in found.note
 
 
+TWO_SHAFTS = """
+[second]
+component = "MainShaft"
+speed = "600 rev/min"
+[weft]
+machine = "WL680-3600"
+"""
+
+
+@pytest.mark.parametrize(("together", "grid"), [(False, "uniform"), (True, "uniform"), (True, "windows")])
+def test_an_angle_and_its_velocity_come_from_one_shaft(together: bool, grid: str) -> None:
+    """With the velocity of a shaft at half the speed, 84.2 m/s were judged to be 42.1."""
+    wired = wires(**{f"weft__shaft_{each}": f"second.{each}" for each in MOTION[: 3 if together else 1]})
+    text = TWO_SHAFTS + "[wires]\n" + wired + claim("below", signal="weft.velocity", bound=50.0)
+    (found,) = verdicts(text, revolutions=2, shaft__speed="300 rev/min", grid=grid)
+    assert found.word == ("FAILS" if together else "undecided")
+    wrong = "weft.shaft_velocity is wired to shaft.velocity, which is not the rate of second.angle"
+    assert (wrong in found.note) != together
+
+
+KINKED = Path(__file__).with_name("kinked.py")
+
+
+@pytest.mark.parametrize("steps", [320, 1440])
+def test_a_held_extreme_at_a_corner_is_of_order_one(steps: int) -> None:
+    """|sin| has a corner at its lowest value: what the cubic holds there is off by a share of the step."""
+    text = table(
+        "m", component=str(KINKED), height=0.706795518928878, place=5.211764196914823, wave=0.0408264
+    )
+    lowest = 0.0408264 * math.cos(5.211764196914823 + math.pi)
+    start = {"shaft__speed": 46.0, "shaft__start_angle": "359.9999 deg"}
+    (found,) = verdicts(
+        text,
+        claim("above", signal="m.value", bound=-0.0193),
+        revolutions=1,
+        steps_per_revolution=steps,
+        **start,
+    )
+    assert lowest < -0.0193 < found.worst
+    assert found.word == "undecided" and found.error > found.worst - lowest
+
+
 def test_a_yes_or_no_output_is_no_surer_than_the_number_that_decides_it(tmp_path: Path) -> None:
     """The belt buckles where its margin, 3e-6 with 76 steps and an error of 2e-4, is below 0."""
     text = 'record = ["weft.travel"]\n' + LOOM + claim("below", signal="belt.buckled", bound=0.5)

@@ -66,5 +66,6 @@ def test_what_a_package_brings_is_not_used_once_its_sources_have_changed(
     assert identities.shipped(MainShaft) == tmp_path / "fmi2/MainShaft.fmu"
     assert identities.shipped(MainShaft, fmi=3) is None
     kept = json.loads((tmp_path / "identities.json").read_bytes())
-    (tmp_path / "identities.json").write_text(json.dumps(kept | {"sources": "others"}))
-    assert identities.shipped(MainShaft) is None
+    for damaged in (json.dumps(kept | {"sources": "others"}), "{", "[]", "{}"):
+        (tmp_path / "identities.json").write_text(damaged)
+        assert identities.shipped(MainShaft) is None

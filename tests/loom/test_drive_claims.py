@@ -40,6 +40,15 @@ def test_fluctuation_is_judged_in_each_revolution_after_those_that_are_skipped()
     assert found.claims[1].holds == (found.claims[1].worst <= 0.05)
 
 
+def test_the_error_of_a_fluctuation_includes_what_its_curve_may_be_off_by():
+    """A ripple of 11 steps: its samples stand at the same places of each wave, in coarser runs, too."""
+    ripple = {"shaft__ripple_amplitude": 0.1, "shaft__ripple_order": 5}
+    start = {"shaft__speed": "600 rev/min", "shaft__start_angle": "269.2463868230665 deg"}
+    text = claim("speed_fluctuation", at_most=0.199995)
+    (found,) = verdicts(text, revolutions=1, steps_per_revolution=55, **ripple, **start)
+    assert found.word == "undecided" and found.error > 0.2 - found.worst > 0.0  # twice the amplitude
+
+
 def test_an_unfinished_revolution_counts_by_what_the_run_shows_of_it():
     """A driven shaft turns by less than the nominal revolutions: a load in the last one was never judged."""
     text = 'component = "DrivenShaft"\n'

@@ -16,7 +16,6 @@ from ..traces.disk import check_room, largest, size_text
 from ..traces.places import abandoned
 from .master.master import Interrupted
 from .planning.plan import Plan
-from .planning.requested import output_port
 from .provenance import groups, scene_file, texts
 from .scenes.scene import Scene, files_of
 
@@ -115,8 +114,7 @@ def target_of(plan: Plan, path: Path, overwrite: bool, report: bool) -> Path:
     inputs = files_of(plan.scene)
     check_target(path, TRACE, inputs, overwrite)
     check_target(partial_of(path), PARTIAL, inputs, overwrite)
-    kinds = [output_port(plan.scene, signal, "record").kind for signal in plan.signals]
-    size = largest(plan.grid.steps + 1, kinds.count("Real"), len(kinds) - kinds.count("Real"))
+    size = largest(plan.grid.steps + 1, len(plan.signals))
     if report and size > LARGE_TRACE:
         printed.complain(f"{path}: the trace takes up to {size_text(size)}; record = [...] keeps less")
     interrupted = [partial_of(path)] if partial_of(path).exists() else []

@@ -101,9 +101,9 @@ def _shipped() -> dict[str, Identity] | None:
     """The identities in the package, unless its sources have been changed since."""
     try:
         kept = json.loads((SHIPPED / "identities.json").read_bytes())
-    except FileNotFoundError:
+        return kept["fmus"] if kept["sources"] == sources() else None
+    except (FileNotFoundError, KeyError, TypeError, ValueError):  # or a damaged one: FMUs are built anew
         return None
-    return kept["fmus"] if kept["sources"] == sources() else None
 
 
 def _everything() -> bytes:

@@ -15,7 +15,7 @@ from h5py import h5a, h5d, h5p, h5s, h5t
 from numpy.typing import NDArray
 from zlib_ng import zlib_ng
 
-ROWS = 8192  # of a block and of a chunk: half as many pack worse, twice as many take slow runs over a second
+ROWS = 8192  # of a block and of a chunk: half as many pack worse, twice as many take a slow run too long
 LEVEL = 1  # of compression: higher ones take three times as long for 5 % less
 UNFILTERED = 0b11  # mask of a chunk that neither shuffle nor gzip has changed
 TEXT = h5py.string_dtype()
@@ -27,7 +27,8 @@ REALS, INTEGERS = h5t.IEEE_F64LE, h5t.STD_I32LE
 def annotate(place: Any, values: Mapping[str, Any]) -> None:
     """Give something new in a file attributes that it does not have yet: numbers, texts or arrays.
 
-    A Boolean is stored as 0 or 1: netCDF cannot read the enumeration that h5py makes of it. Each is closed here, not when Python gets to it: with one open, HDF5 lets no reader join.
+    A Boolean is stored as 0 or 1: netCDF cannot read the enumeration that h5py makes of it. Each is closed
+    here, not when Python gets to it: with one open, HDF5 lets no reader join.
     """
     for name, value in values.items():
         if isinstance(value, str):

@@ -5,10 +5,21 @@ import os
 import shutil
 from pathlib import Path
 
+from .chunks import chunk_of
 
-def largest(rows: int, reals: int, integers: int) -> int:
-    """Bytes that the signals of a trace take before they are packed, with time and shaft angle."""
-    return rows * (8 * (reals + 2) + 4 * integers)
+SPARE = 65536  # bytes beyond what is reckoned with, for HDF5's own book-keeping
+PER_DATASET = 4096  # bytes of book-keeping for a dataset, in its header or for a block
+
+
+def largest(rows: int, signals: int) -> int:
+    """Bytes that a trace takes at most while it is written, with time, shaft angle and book-keeping."""
+    blocks = -(-rows // chunk_of(rows))
+    return SPARE + PER_DATASET * (signals + 2) + blocks * block_size(rows, signals)
+
+
+def block_size(rows: int, signals: int) -> int:
+    """Bytes that a block of a trace of so many rows takes at most, with time and shaft angle."""
+    return SPARE + (PER_DATASET + 8 * chunk_of(rows)) * (signals + 2)
 
 
 def check_room(path: Path, size: int) -> None:

@@ -18,7 +18,7 @@ from .. import units
 from ..files import make_folder, put
 from ..version import __version__
 from .chunks import INTEGERS, REALS, ROWS, Columns, annotate, chunk_of, dataset
-from .disk import reserve
+from .disk import PER_DATASET, SPARE, block_size, reserve
 from .edit import edited
 from .layout import BESIDE
 from .places import abandoned, mark, replace
@@ -26,10 +26,8 @@ from .reader import Trace
 from .signals import Channel, Early, Floats, Integers
 
 SOFTWARE = f"loomfmu {__version__}"
-SPARE = 65536  # bytes beyond what is reckoned with, for HDF5's own book-keeping
 PER_ATTRIBUTE = 128  # bytes of a name and of what HDF5 says of an attribute
 WHOLE = Early()  # a run that went to its end
-PER_DATASET = 4096  # bytes of book-keeping for a dataset, in its header or for a block
 
 
 def partial_of(path: Path, mark: str = "") -> Path:
@@ -56,7 +54,7 @@ class TraceWriter:
         texts = [str(value) for each in (attributes, *groups.values()) for value in each.values()]
         stored = sum(PER_ATTRIBUTE + len(text.encode()) for text in texts)
         header = SPARE + stored + PER_DATASET * (len(channels) + 2)
-        self._block = SPARE + (PER_DATASET + 8 * ROWS) * (len(channels) + 2)
+        self._block = block_size(rows, len(channels))
         try:
             with self.partial.open("xb") as file:
                 reserve(file.fileno(), header)

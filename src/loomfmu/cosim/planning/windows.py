@@ -20,6 +20,7 @@ from ...declaring.variables import MOTION
 from ...errors import LoomfmuError
 from ...traces import Recording
 from ..claims.claim import EVERY_STEP, LANDINGS, Claim
+from ..claims.movers import movers_of
 from ..master.grid import Grid, chosen, kinks, period, uniform
 from ..scenes.graph import step_order
 from ..scenes.scene import Scene
@@ -193,6 +194,7 @@ def _watched(requested: Requested, kept: Sequence[str]) -> list[str]:
         component = scene.instances[owner].fmu.component
         windows = component.windows if component and followed else ()
         wanted += [f"{owner}.{name}" for name in (*windows, *followed)]
+    wanted += [mover.angle for mover in movers_of(owners, requested) if mover.angle]
     return requested.with_rates(wanted)
 
 
