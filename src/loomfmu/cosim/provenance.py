@@ -1,17 +1,22 @@
 """The provenance of a run in its trace: enough to see what was run, and to run it again."""
 
+import hashlib
 import json
 import os
 import shlex
+from functools import cache
 from pathlib import Path
 from typing import Any
 
+from ..fmi.native.libraries import library_of
 from .importing.fmus import Fmu
 from .importing.ports import Value
+from .master import steppers
 from .planning.plan import Plan
 from .scenes.headings import heading
 from .scenes.instances import Instance
 from .scenes.scene import Scene
+from .standard import standard
 
 
 def attributes(plan: Plan, flavour: str, folder: Path) -> dict[str, str | float]:
@@ -44,6 +49,18 @@ def attributes(plan: Plan, flavour: str, folder: Path) -> dict[str, str | float]
         **({"notes": "\n".join(scene.notes)} if scene.notes else {}),
         **{f"fmu_{name}_version": fmu.version for name, fmu in sorted(fmus.items())},
         **{f"fmu_{name}_sha256": fmu.sha256 for name, fmu in sorted(fmus.items())},
+        **_libraries(),
+    }
+
+
+@cache
+def _libraries() -> dict[str, str]:
+    """The SHA-256 of the libraries that step and judge, where there are any."""
+    found = {source.stem: library_of(source) for source in (steppers.SOURCE, standard().RULES)}
+    return {
+        f"{name}_sha256": hashlib.sha256(library.read_bytes()).hexdigest()
+        for name, library in found.items()
+        if library is not None
     }
 
 
@@ -89,7 +106,8 @@ def _command(scene: Scene, flavour: str) -> dict[str, str]:
     source = scene.package or scene.file
     if source is None:
         return {}
-    words = ["loomfmu", "run", str(source)]
+    here = Path.cwd()
+    words = ["loomfmu", "run", str(source.relative_to(here) if source.is_relative_to(here) else source)]
     for key, text in texts(scene.overrides).items():
         words += ["--set", f"{key}={text}"]
     return {"command": shlex.join([*words, *(["--live"] if flavour == "live" else [])])}
