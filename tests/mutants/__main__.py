@@ -3,7 +3,8 @@
     python tests/mutants --seed 25 --number 100 COPY
 
 changes files of COPY, a clone that may be spoiled, and prints a line for each mutant. `tests.toml`
-names the tests of a module, after its doctests; `--tests` takes those of another clone, and what follows `--` goes to pytest.
+names the tests of a module, which come after its doctests; `--tests` takes those of another clone, and what
+follows `--` goes to pytest.
 """
 
 import argparse
