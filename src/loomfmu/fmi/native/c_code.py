@@ -105,6 +105,7 @@ def shown(kind: Kind) -> str:
 
 
 def short(kind: Kind) -> str:
+    """A type in the names of structs that hold several values."""
     if isinstance(kind, Array):
         return f"{NAMES[kind.element][0]}{kind.size}"
     return f"{kind.name}{sizes([kind])}" if isinstance(kind, Record) else NAMES[kind][0]

@@ -131,7 +131,9 @@ class Expressions(Values):
         kind = WHOLE if left.type == right.type == WHOLE and operation is not ast.Div else REAL
         if operation in DIVISIONS:
             one, other = self.as_type(node.left, kind).text, self.as_type(node.right, kind).text
-            return Code(f"python_{DIVISIONS[operation]}_{self.scope.numbers.named(kind)}({one}, {other})", kind)
+            return Code(
+                f"python_{DIVISIONS[operation]}_{self.scope.numbers.named(kind)}({one}, {other})", kind
+            )
         if operation not in ARITHMETIC:
             raise Untranslatable(node, f"{operation.__name__} is not in the subset")
         symbol, level = ARITHMETIC[operation]
@@ -178,7 +180,10 @@ class Expressions(Values):
         then, otherwise = self.of(node.body), self.of(node.orelse)
         kind = next(each for each in (REAL, WHOLE, TRUTH) if each in (then.type, otherwise.type))
         numbers = self.scope.numbers
-        then, otherwise = numbers.widened(then, kind, node.body), numbers.widened(otherwise, kind, node.orelse)
+        then, otherwise = (
+            numbers.widened(then, kind, node.body),
+            numbers.widened(otherwise, kind, node.orelse),
+        )
         asked = within(self.condition(node.test), OR)
         return Code(f"{asked} ? {within(then, OR)} : {within(otherwise, TERNARY)}", kind, TERNARY)
 

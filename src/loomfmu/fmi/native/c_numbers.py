@@ -13,7 +13,7 @@ OPERATIONS = {"+": "dual_sum", "-": "dual_difference", "*": "dual_product", "/":
 
 @dataclass(frozen=True)
 class Numbers:
-    """A type of real numbers: its name, how python_arithmetic.h calls it, and a prefix for what has two forms."""
+    """A type of real numbers: its name, that in python_arithmetic.h, and a prefix for what has two forms."""
 
     type: str
     name: str
@@ -37,7 +37,9 @@ class Numbers:
 
     def constant(self, code: Code, form: str) -> Code:
         """A number that does not change with anything."""
-        return code if self is PLAIN or code.type != REAL else replace(code, text=form % code.text, level=ATOM)
+        return (
+            code if self is PLAIN or code.type != REAL else replace(code, text=form % code.text, level=ATOM)
+        )
 
     def widened(self, code: Code, kind: Kind, node: ast.AST) -> Code:
         """An expression as another type: what Python takes for equal, and nothing else."""
@@ -46,8 +48,12 @@ class Numbers:
         if kind == REAL and code.number is not None:
             return self.literal(float(code.number))
         if (code.type, kind) in ((WHOLE, REAL), (TRUTH, REAL), (TRUTH, WHOLE)):
-            return self.constant(Code(f"({kind}){within(code, ATOM)}", kind, UNARY), f"{self.prefix}of(%s)")
+            return self.converted(code, kind)
         raise Untranslatable(node, f"{ast.unparse(node)} is {shown(code.type)} where {shown(kind)} is needed")
+
+    def converted(self, code: Code, kind: Kind = REAL) -> Code:
+        """A whole number or a truth value as another type."""
+        return self.constant(Code(f"({kind}){within(code, ATOM)}", kind, UNARY), f"{self.prefix}of(%s)")
 
     def negated(self, code: Code) -> Code:
         """A number with the other sign."""

@@ -196,7 +196,9 @@ class Values:
             table = [literal(value) for value in scope.tables[name]]
             place, kind = f"{scope.component}_{c_name(name)}", _element(table)
             values = ", ".join(scope.numbers.initial(PLAIN.widened(code, kind, array)) for code in table)
-            scope.structs[place] = f"static const {scope.numbers.text(kind)} {place}[{len(table)}] = {{{values}}};"
+            scope.structs[place] = (
+                f"static const {scope.numbers.text(kind)} {place}[{len(table)}] = {{{values}}};"
+            )
             return place, kind, len(table)
         code = self.any_of(array) if not of_self(array) else None
         if code is None:

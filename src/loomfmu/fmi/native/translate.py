@@ -24,7 +24,9 @@ from .c_scope import Scope
 
 ENTRIES = ("initialize", "step")  # what the shell calls
 INCLUDES = '#include "component.h"\n#include "python_arithmetic.h"\n'
-DUAL_INCLUDES = "/* With dual numbers: each value brings its derivative in one direction. */\n" '#include "dual.h"\n'
+DUAL_INCLUDES = (
+    '/* With dual numbers: each value brings its derivative in one direction. */\n#include "dual.h"\n'
+)
 HEADER = """{about}#ifndef COMPONENT_H
 #define COMPONENT_H
 
