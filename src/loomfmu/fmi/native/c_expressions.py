@@ -27,6 +27,7 @@ from .c_code import (
     shown,
     within,
 )
+from .c_numbers import DUAL
 from .c_values import Values
 
 ARITHMETIC: dict[type[ast.operator], tuple[str, int]] = {
@@ -84,6 +85,7 @@ REAL_FUNCTIONS = {
     ),
     **dict.fromkeys(("atan2", "copysign", "fmod", "pow"), 2),
 }
+AT_ROOT = "at_root"  # of the physics, which with dual numbers is one of dual.h
 WHOLE_FUNCTIONS = ("floor", "ceil", "trunc")
 TRUTH_FUNCTIONS = ("isfinite", "isinf", "isnan")
 
@@ -188,6 +190,8 @@ class Expressions(Values):
         return Code(f"{asked} ? {within(then, OR)} : {within(otherwise, TERNARY)}", kind, TERNARY)
 
     def _call(self, node: ast.Call) -> Code:
+        if isinstance(node.func, ast.Name) and node.func.id == AT_ROOT and self.scope.numbers is DUAL:
+            return self._function(AT_ROOT, node.args)
         if self.is_ours(node):
             text, results = self.call(node)
             if len(results) != 1:

@@ -2,6 +2,8 @@
 
 from math import sqrt
 
+from .brackets import at_root
+
 
 def cubic_piece(
     distance: float, length: float, left: float, right: float, left_bend: float, right_bend: float
@@ -140,4 +142,6 @@ def _part_above(
             start = middle
         else:
             end = middle
+    value, slope, _second, _third = cubic_piece(start, length, left, right, left_bend, right_bend)
+    start = at_root(start, value - level, slope)
     return start - low if at_low >= level else high - start

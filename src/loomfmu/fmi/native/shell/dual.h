@@ -110,6 +110,12 @@ static inline dual dual_pow(dual x, dual power)
                                 + DUAL_ALONG(value * log(x.value), power.tangent));
 }
 
+/* The root of a function that a search has found, with the derivative that follows from its equation. */
+static inline dual dual_at_root(dual root, dual value, dual slope)
+{
+    return dual_made(root.value, root.tangent - DUAL_ALONG(1.0 / slope.value, value.tangent));
+}
+
 /* A remainder: so many divisors less than the number. */
 static inline dual dual_rest(dual x, dual divisor, double rest)
 {
