@@ -132,6 +132,12 @@ class Instance:
         values = (kind * len(names))()
         return self.call(f"Get{word}", self.references(names), *self.several(values)), list(values)
 
+    def write(self, values: dict[str, float]) -> int:
+        """Set real variables in one call."""
+        word, kind = self.types["Real"]
+        given = (kind * len(values))(*values.values())
+        return self.call(f"Set{word}", self.references(list(values)), *self.several(given))
+
     def several(self, values: Any) -> tuple[Any, ...]:
         """Values as an argument, with their counts."""
         return c_size_t(len(values)), values
@@ -143,7 +149,9 @@ class Instance:
         seeds = (c_double * len(seed))(*seed)
         values = (c_double * len(knowns if adjoint else unknowns))()
         names = (
-            argument for each in (unknowns, knowns) for argument in (self.references(each), c_size_t(len(each)))
+            argument
+            for each in (unknowns, knowns)
+            for argument in (self.references(each), c_size_t(len(each)))
         )
         function = "GetAdjointDerivative" if adjoint else "GetDirectionalDerivative"
         status = self.call(function, *names, *self.sensitivities(seeds, values))

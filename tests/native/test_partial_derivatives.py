@@ -1,10 +1,13 @@
-"""Derivatives of outputs by inputs and parameters: beside differences of the outputs, and between themselves."""
+"""Derivatives of outputs by inputs and parameters, beside differences of the outputs."""
 
+import itertools
 import math
 import random
+import xml.etree.ElementTree as ElementTree
 from collections.abc import Callable
-from pathlib import Path
 
+import fmpy.fmi2
+import fmpy.fmi3
 import pytest
 from driving import declared, moved
 from natives import DISCARD, ERROR, MEMORYLESS, OK, SOLVED, Instance
@@ -24,7 +27,7 @@ def reals(name: str, *causalities: str) -> list[Variable]:
 def drawn(variable: Variable, value: float, rng: random.Random) -> float:
     """A value near another one, far enough from the limits for differences."""
     low, high = variable.limits
-    reach = 0.02 * scale(variable, value)
+    reach = 0.01 * scale(variable, value)
     return min(max(value + rng.uniform(-reach, reach), low + reach), high - reach)
 
 
@@ -79,7 +82,7 @@ class Point:
         instance = self.instance
         assert instance.call("SetFMUstate", self.before) == OK
         given = {v.name: self.values[v.name] for v in self.knowns if v.name in self.values} | values
-        if instance.set(**given) != OK or (not self.start and instance.step(self.time, self.size) != OK):
+        if instance.write(given) != OK or (not self.start and instance.step(self.time, self.size) != OK):
             return None
         status, found = instance.read(self.outputs)
         return found if status == OK else None
@@ -97,7 +100,8 @@ class Point:
             if None not in ys:
                 found.append([slopes(*each, step) for each in zip(*ys, strict=True)])
         return [
-            [best([at[place][side] for at in found]) for side in range(3)] for place in range(len(self.outputs))
+            [best([at[place][side] for at in found]) for side in range(3)]
+            for place in range(len(self.outputs))
         ]
 
 
@@ -111,9 +115,18 @@ def slopes(a: float, b: float, c: float, d: float, e: float, step: float) -> tup
 
 def best(values: list[float]) -> tuple[float, float]:
     """The value that the next step changes least, and that change."""
-    changes = [(abs(a - b), b) for a, b in zip(values, values[1:], strict=False)]
+    changes = [(abs(a - b), b) for a, b in itertools.pairwise(values)]
     error, value = min(changes, default=(math.inf, 0.0))
     return value, error
+
+
+def sharp(output: str, values: dict[str, float]) -> bool:
+    """Return whether the place of an extreme is known well enough for its derivatives.
+
+    Golden sections find the largest deflection to 2e-9 of the step. Where a belt goes far beyond buckling
+    within a step, the deflection passes its crest in a small part of that.
+    """
+    return output != "largest_deflection" or values.get("lowest_margin", 0.0) > -10.0
 
 
 def compared(point: Point, report: Callable[[str, str, float, float], None]) -> tuple[int, int]:
@@ -134,6 +147,8 @@ def compared(point: Point, report: Callable[[str, str, float, float], None]) -> 
             noise = 1e-8 * max(abs(value), 1e-3) / unit
             off, error = min((abs(tangent - each) - 10.0 * error, error) for each, error in candidates)
             size = max(abs(tangent), noise * 1e3)
+            if not sharp(output, dict(zip(point.outputs, base, strict=True))):
+                continue
             count += 1
             if error > 1e-3 * size:
                 unresolved += 1
@@ -174,3 +189,186 @@ def test_derivatives_are_those_of_the_outputs(native, name, kind):
 @pytest.mark.parametrize("name", COMPONENTS)
 def test_derivatives_are_those_of_the_outputs_at_many_points(native, name, kind):
     check(native, name, kind, range(MANY), 3)
+
+
+@pytest.mark.parametrize("name", COMPONENTS)
+def test_adjoint_derivatives_are_those_of_all_directions(native, name):
+    point = Point(native(name, fmi=3), name, "start", 0)
+    rng = random.Random(name)
+    knowns = [v.name for v in point.knowns]
+    weights = [rng.uniform(-1.0, 1.0) for _ in point.outputs]
+    status, found = point.instance.derivative(point.outputs, knowns, weights, adjoint=True)
+    assert status == OK, point.instance.texts
+    total = [0.0] * len(point.outputs)
+    for known, adjoint in zip(knowns, found, strict=True):
+        status, column = point.instance.derivative(point.outputs, [known], [1.0])
+        assert (status, adjoint) == (OK, sum_of(weights, column))
+        share = rng.uniform(-1.0, 1.0)
+        total = [a + share * b for a, b in zip(total, column, strict=True)]
+    rng = random.Random(name)
+    seeds = [rng.uniform(-1.0, 1.0) for _ in (*weights, *knowns)][len(weights) :]
+    status, together = point.instance.derivative(point.outputs, knowns, seeds)
+    assert status == OK
+    for one, other, output in zip(together, total, point.outputs, strict=True):
+        # rounding of the terms, which cancel
+        assert one == pytest.approx(other, rel=1e-6, abs=1e-9 * max(1.0, abs(one))), output
+
+
+def sum_of(weights: list[float], column: list[float]) -> float:
+    total = 0.0
+    for weight, each in zip(weights, column, strict=True):
+        total += weight * each
+    return total
+
+
+def test_they_are_had_through_fmpy(package):
+    name = "WeftInsertion"
+    second = fmpy.read_model_description(package(name, 2).path)
+    third = fmpy.read_model_description(package(name, 3).path)
+    for interface in (second.coSimulation, second.modelExchange):
+        assert interface.providesDirectionalDerivative
+    for interface in (third.coSimulation, third.modelExchange):
+        assert interface.providesAdjointDerivatives
+    root = ElementTree.parse(package(name, 3).directory / "modelDescription.xml").getroot()
+    for interface in ("CoSimulation", "ModelExchange"):  # fmpy reads the attribute by the name of FMI 2
+        assert root.find(interface).get("providesDirectionalDerivatives") == "true"
+    found = [_gradient(package(name, fmi)) for fmi in (2, 3)]
+    assert found[0] == found[1]
+    assert found[0][0] == pytest.approx(found[0][2], rel=1e-12)  # velocity over the shaft's
+
+
+def _gradient(fmu) -> list[float]:
+    """Derivatives of travel by the shaft's angle, in a step, and the ratio of their velocities."""
+    make = fmpy.fmi2.FMU2Slave if fmu.fmi == 2 else fmpy.fmi3.FMU3Slave
+    slave = make(guid=fmu.guid, modelIdentifier=fmu.identifier, unzipDirectory=str(fmu.directory))
+    ports = {name: port.reference for name, port in fmu.ports.items()}
+    slave.instantiate()
+    set_real, set_flag, get = (
+        (slave.setReal, slave.setBoolean, slave.getReal)
+        if fmu.fmi == 2
+        else (slave.setFloat64, slave.setBoolean, slave.getFloat64)
+    )
+    if fmu.fmi == 2:
+        slave.setupExperiment(startTime=0.0)
+    set_flag([ports["follow_shaft"], ports["inputs_at_step_end"]], [True, True])
+    slave.enterInitializationMode()
+    slave.exitInitializationMode()
+    set_real([ports["shaft_angle"], ports["shaft_velocity"]], [1.0, 50.0])
+    slave.doStep(currentCommunicationPoint=0.0, communicationStepSize=1e-3)
+    wanted = [ports["travel"], ports["velocity"]]
+    found = slave.getDirectionalDerivative(wanted, [ports["shaft_angle"]], [1.0])
+    if fmu.fmi == 3:
+        assert slave.getAdjointDerivative(wanted, [ports["shaft_angle"]], [1.0, 0.0]) == found[:1]
+    ratio = get([ports["velocity"]])[0] / 50.0
+    slave.terminate()
+    slave.freeInstance()
+    return [*found, ratio]
+
+
+either_fmi = pytest.mark.parametrize("fmi", [2, 3])
+
+
+@either_fmi
+@pytest.mark.parametrize(
+    ("unknown", "known", "message"),
+    [
+        ("pick", "shaft_angle", "is not a variable of type"),  # whole numbers
+        ("rotor_angle", "law", "is not a variable of type"),
+        ("table_1", "shaft_angle", "table_1, is not an output with a derivative now"),
+        ("rotor_angle", "rotor_velocity", "rotor_velocity: there is no derivative by it now"),
+    ],
+)
+def test_other_variables_are_rejected(native, fmi, unknown, known, message):
+    instance = native("DobbyDrive", fmi=fmi).start()
+    status, _values = instance.derivative([unknown], [known], [1.0])
+    assert (status, len(instance.texts)) == (ERROR, 1)
+    assert message in instance.texts[0]
+
+
+@either_fmi
+def test_parameters_count_at_the_start_and_without_a_memory(native, fmi):
+    monitor = native("BeltMonitor", fmi=fmi)
+    assert monitor.enter() == OK
+    assert monitor.derivative(["margin"], ["bending_stiffness"], [1.0])[0] == OK
+    assert monitor.call("ExitInitializationMode") == OK
+    assert monitor.derivative(["margin"], ["bending_stiffness"], [1.0])[0] == ERROR
+    insertion = native("WeftInsertion", fmi=fmi).start()
+    assert insertion.step(0.0, 1e-3) == OK
+    (status, (slope,)), size = insertion.derivative(["travel"], ["speed"], [1.0]), 1e-4
+    assert status == OK
+    (travel,) = insertion.get("travel")
+    speed = COMPONENTS["WeftInsertion"]().speed
+    other = native("WeftInsertion", fmi=fmi).start(speed=speed + size)
+    assert other.step(0.0, 1e-3) == OK
+    assert (other.get("travel")[0] - travel) / size == pytest.approx(slope, rel=1e-4)  # forward difference
+
+
+@either_fmi
+def test_there_are_none_before_the_start(native, fmi):
+    instance = native("WeftInsertion", fmi=fmi)
+    assert instance.derivative(["travel"], ["shaft_angle"], [1.0])[0] == ERROR
+    assert "is not allowed in the state 'instantiated'" in instance.texts[0]
+
+
+@either_fmi
+def test_there_are_none_of_a_step_that_failed(native, fmi):
+    instance = native("BeltMonitor", fmi=fmi).start()
+    assert instance.step(0.0, 1e-3) == OK
+    assert instance.step(1e300, 1e-3) == DISCARD
+    assert instance.derivative(["margin"], ["travel"], [1.0])[0] == DISCARD
+    assert instance.texts[-1] == "the last step failed: there are no outputs to differentiate"
+
+
+@either_fmi
+def test_a_restored_state_has_the_derivatives_of_its_outputs(native, fmi):
+    instance = native("BeltMonitor", fmi=fmi).start(travel=0.9, acceleration=50.0)
+    assert instance.step(0.0, 1e-3) == OK
+    wanted = instance.derivative(["margin", "deflection"], ["travel"], [1.0])
+    state = instance.save()
+    packed = instance.packed(state)
+    assert (instance.set(travel=1.1), instance.step(1e-3, 1e-3)) == (OK, OK)
+    assert instance.derivative(["margin", "deflection"], ["travel"], [1.0]) != wanted
+    assert instance.call("SetFMUstate", state) == OK
+    assert instance.derivative(["margin", "deflection"], ["travel"], [1.0]) == wanted
+    other = native("BeltMonitor", fmi=fmi)
+    status, unpacked = other.unpack(packed)
+    assert (status, other.call("SetFMUstate", unpacked)) == (OK, OK)
+    assert other.derivative(["margin", "deflection"], ["travel"], [1.0]) == wanted
+    assert (instance.drop(state), other.drop(unpacked)) == (OK, OK)
+
+
+@either_fmi
+@pytest.mark.parametrize("name", MEMORYLESS)
+def test_in_model_exchange_they_are_those_of_a_step_to_now(native, fmi, name):
+    given = {v.name: moved(COMPONENTS[name], 0.03)[v.name] for v in reals(name, "input")}
+    solved, stepped = native(name, SOLVED, fmi).ready(), native(name, fmi=fmi).start()
+    assert (solved.set_time(0.03), solved.set(**given), stepped.set(**given)) == (OK, OK, OK)
+    assert stepped.step(0.03, 0.0) == OK
+    continuous = [v.name for v in reals(name, "output") if v.variability == "continuous"]
+    knowns = [v.name for v in reals(name, "input", "parameter")]
+    seeds = [1.0 + place for place, _known in enumerate(knowns)]
+    assert solved.derivative(continuous, knowns, seeds) == stepped.derivative(continuous, knowns, seeds)
+
+
+def test_time_is_a_known_of_fmi_3(native):
+    instance = native("MainShaft", fmi=3).start(ramp_duration=0.1)
+    assert instance.step(0.02, 1e-3) == OK
+    (velocity, acceleration) = instance.get("velocity", "acceleration")
+    status, found = instance.derivative(["angle", "velocity"], ["time_"], [1.0])
+    assert status == OK
+    assert found == pytest.approx([velocity, acceleration], rel=1e-12)
+
+
+def test_carried_inputs_carry_their_directions(native):
+    """A step with given derivatives is one with the inputs of its end, and what they are made of."""
+    size, rate = 1e-3, 30.0
+    carried = native("WeftInsertion").start(follow_shaft=True, shaft_angle=1.0, shaft_velocity=rate)
+    assert carried.set_derivatives({("shaft_velocity", 1): 0.0}) == OK
+    assert carried.step(0.0, size) == OK
+    ended = native("WeftInsertion").start(follow_shaft=True, inputs_at_step_end=True)
+    assert ended.set(shaft_angle=1.0 + size * rate, shaft_velocity=rate) == OK
+    assert ended.step(0.0, size) == OK
+    _status, (of_angle,) = ended.derivative(["travel"], ["shaft_angle"], [1.0])
+    assert carried.derivative(["travel"], ["shaft_angle"], [1.0]) == (OK, [of_angle])
+    _status, (of_velocity,) = carried.derivative(["travel"], ["shaft_velocity"], [1.0])
+    assert of_velocity == pytest.approx(size * of_angle, rel=1e-12)
