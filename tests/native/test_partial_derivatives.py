@@ -16,7 +16,7 @@ from loomfmu.components import COMPONENTS
 from loomfmu.declaring.variables import Variable
 
 STEPS = [1e-2 / 4.0**n for n in range(8)]  # of the differences, as shares of a variable's scale
-POINTS = {"start": 2, "step": 3}
+POINTS = {"start": 2, "step": 4}
 MANY = 100  # of each kind: 200 points for a component
 
 
@@ -157,38 +157,36 @@ def compared(point: Point, report: Callable[[str, str, float, float], None]) -> 
     return count, unresolved
 
 
-def check(native: Callable[..., Instance], name: str, kind: str, seeds: range, fmi: int) -> float:
-    """Return the largest difference over the size of a derivative."""
-    largest, count, unresolved, reached = 0.0, 0, 0, 0
-    for seed in seeds:
+def check(native: Callable[..., Instance], name: str, kind: str, points: int, fmi: int) -> None:
+    """Compare at that many points. Of those that are drawn, a component rejects some."""
+    count = unresolved = reached = 0
+    for seed in range(4 * points):
         point = Point(native(name, fmi=fmi), name, kind, seed)
-        if not point.possible:
+        if not point.possible or reached == points:
             continue
         reached += 1
 
         def report(output: str, known: str, off: float, size: float, seed: int = seed) -> None:
-            nonlocal largest
-            largest = max(largest, off / size)
             # 1e-5: the error of the differences is known by its order of magnitude alone
-            assert off <= 1e-5 * size, (name, kind, seed, output, known, off, size)
+            assert off <= 1e-5 * size, (seed, output, known, off, size)
 
         more, without = compared(point, report)
         count, unresolved = count + more, unresolved + without
-    assert reached >= 0.6 * len(seeds) and unresolved <= 0.1 * count, (reached, unresolved, count)
-    return largest
+    # differences across a kink, or within the noise of an iteration, tell nothing
+    assert reached == points and unresolved <= 0.1 * count, (reached, unresolved, count)
 
 
 @pytest.mark.parametrize("kind", POINTS)
 @pytest.mark.parametrize("name", COMPONENTS)
 def test_derivatives_are_those_of_the_outputs(native, name, kind):
-    check(native, name, kind, range(POINTS[kind]), 2)
+    check(native, name, kind, POINTS[kind], 2)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", POINTS)
 @pytest.mark.parametrize("name", COMPONENTS)
 def test_derivatives_are_those_of_the_outputs_at_many_points(native, name, kind):
-    check(native, name, kind, range(MANY), 3)
+    check(native, name, kind, MANY, 3)
 
 
 @pytest.mark.parametrize("name", COMPONENTS)
