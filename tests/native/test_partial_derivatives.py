@@ -123,10 +123,11 @@ def best(values: list[float]) -> tuple[float, float]:
 def sharp(output: str, values: dict[str, float]) -> bool:
     """Return whether the place of an extreme is known well enough for its derivatives.
 
-    Golden sections find the largest deflection to 2e-9 of the step. Where a belt goes far beyond buckling
-    within a step, the deflection passes its crest in a small part of that.
+    Golden sections find those of a belt to 2e-9 of the step. Where it goes far beyond buckling within a step,
+    deflection and speed limit pass their extremes in a small part of that.
     """
-    return output != "largest_deflection" or values.get("lowest_margin", 0.0) > -10.0
+    searched = output in ("largest_deflection", "lowest_speed_limit")
+    return not searched or values.get("lowest_margin", 0.0) > -10.0
 
 
 def compared(point: Point, report: Callable[[str, str, float, float], None]) -> tuple[int, int]:
@@ -144,7 +145,7 @@ def compared(point: Point, report: Callable[[str, str, float, float], None]) -> 
         unit = scale(known, point.values.get(known.name, known.start))
         for output, value, tangent, candidates in zip(point.outputs, base, found, wanted, strict=True):
             # the outputs' rounding, with what their terms cancel, over the steps of the differences
-            noise = 1e-8 * max(abs(value), 1e-3) / unit
+            noise = 1e-8 * max(abs(value), 0.1) / unit
             off, error = min((abs(tangent - each) - 10.0 * error, error) for each, error in candidates)
             size = max(abs(tangent), noise * 1e3)
             if not sharp(output, dict(zip(point.outputs, base, strict=True))):

@@ -70,7 +70,7 @@ class Numbers:
         return Code(f"{within(left, level)} {symbol} {shown}", left.type, level)
 
     def value(self, code: Code) -> Code:
-        """What is compared, or becomes a whole number or a truth value: no derivative leads through that."""
+        """The value alone, for all that no derivative leads through: comparisons, whole numbers."""
         if self is PLAIN or code.type != REAL:
             return code
         return Code(f"{within(code, ATOM)}.value", REAL)

@@ -8,10 +8,12 @@ import ast
 import io
 import math
 import tokenize
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import groupby
 from pathlib import Path
-from threading import Lock
+from threading import RLock
 from typing import Any
 
 from ...declaring.variables import Component, Variable, arrays_of, variables_of
@@ -53,11 +55,21 @@ class Written:
 
 @dataclass(frozen=True)
 class Translation:
-    """A component in C, with plain numbers and with dual ones."""
+    """A component in C, with plain numbers and with dual ones, each written when it is first used."""
 
     name: str
-    plain: Written
-    dual: Written
+    written: Callable[[Numbers], Written]
+
+    @cached_property
+    def plain(self) -> Written:
+        """With plain numbers."""
+        return self.written(PLAIN)
+
+    @cached_property
+    def dual(self) -> Written:
+        """With dual numbers."""
+        with _one_at_a_time:
+            return self.written(DUAL)
 
     @property
     def header(self) -> str:
@@ -80,7 +92,7 @@ class Translation:
 
 
 _done: dict[type[Component], Translation] = {}
-_one_at_a_time = Lock()  # Python 3.11 may fail with a SystemError where two threads parse
+_one_at_a_time = RLock()  # Python 3.11 may fail with a SystemError where two threads parse
 
 
 def translate(component: type[Component]) -> Translation:
@@ -97,11 +109,14 @@ def translate(component: type[Component]) -> Translation:
 def _translated(component: type[Component]) -> Translation:
     text = source.flatten(component)
     tree = ast.parse(text)
+    found = Translation(
+        component.__name__, lambda numbers: _written(component, tree, _comments(text), numbers)
+    )
     try:
-        plain, dual = (_written(component, tree, _comments(text), numbers) for numbers in (PLAIN, DUAL))
+        _ = found.plain  # what translates with plain numbers does so with dual ones
     except Untranslatable as error:
         raise _located(component, text, tree, error) from None
-    return Translation(component.__name__, plain, dual)
+    return found
 
 
 def _written(

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from ...declaring.variables import Variable, variables_of
 from ...errors import LoomfmuError
 from ..native.c_code import PRODUCT, REAL, SUM, TYPES, WHOLE, Code, c_name, literal
-from ..native.c_numbers import DUAL, PLAIN, Numbers
+from ..native.c_numbers import PLAIN, Numbers
 from ..native.tables import Part as Stepped
 from ..native.translate import Translation, Written, translate
 from .system import SPEED, STEP, STEPS, Drive, Part, System, limited, problems_of
@@ -20,8 +20,11 @@ def translated(system: System) -> Translation:
         several = [name for name in named if sum(each.__name__ == name for each in components) > 1]
         raise LoomfmuError(f"two components are called {several[0]}; rename one of them")
     parts = [translate(component) for component in components]
-    plain = _written(system, [each.plain for each in parts], PLAIN)
-    return Translation(system.name, plain, _written(system, [each.dual for each in parts], DUAL))
+
+    def written(numbers: Numbers) -> Written:
+        return _written(system, [each.plain if numbers is PLAIN else each.dual for each in parts], numbers)
+
+    return Translation(system.name, written)
 
 
 def _written(system: System, parts: list[Written], numbers: Numbers) -> Written:
