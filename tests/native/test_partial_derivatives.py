@@ -3,8 +3,10 @@
 import itertools
 import math
 import random
+import subprocess
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Callable
+from pathlib import Path
 
 import fmpy.fmi2
 import fmpy.fmi3
@@ -14,6 +16,8 @@ from natives import DISCARD, ERROR, MEMORYLESS, OK, SOLVED, Instance
 
 from loomfmu.components import COMPONENTS
 from loomfmu.declaring.variables import Variable
+from loomfmu.fmi.native.compiler import ARITHMETIC
+from loomfmu.fmi.native.native_fmu import sources
 
 STEPS = [1e-2 / 4.0**n for n in range(8)]  # of the differences, as shares of a variable's scale
 POINTS = {"start": 2, "step": 4}
@@ -262,6 +266,18 @@ def _gradient(fmu) -> list[float]:
     slave.terminate()
     slave.freeInstance()
     return [*found, ratio]
+
+
+@pytest.mark.few(5)
+@pytest.mark.parametrize("name", COMPONENTS)
+def test_the_values_of_dual_numbers_are_those_of_plain_ones(gcc, tmp_path, name):
+    for file, text in sources(COMPONENTS[name]).items():
+        (tmp_path / file).write_text(text, encoding="utf-8")
+    host = Path(__file__).with_name("dual.c")
+    call = [gcc, "-std=c99", *ARITHMETIC, f"-I{tmp_path}", "-o", tmp_path / "dual", host, "-lm"]
+    subprocess.run(call, check=True)
+    run = subprocess.run([tmp_path / "dual"], capture_output=True, text=True, check=False)
+    assert (run.returncode, run.stdout[:500]) == (0, "")
 
 
 either_fmi = pytest.mark.parametrize("fmi", [2, 3])
