@@ -149,7 +149,7 @@ def compared(point: Point, report: Callable[[str, str, float, float], None]) -> 
         unit = scale(known, point.values.get(known.name, known.start))
         for output, value, tangent, candidates in zip(point.outputs, base, found, wanted, strict=True):
             # the outputs' rounding, with what their terms cancel, over the steps of the differences
-            noise = 1e-8 * max(abs(value), 0.1) / unit
+            noise = 1e-8 * max(abs(value), 1.0) / unit
             off, error = min((abs(tangent - each) - 10.0 * error, error) for each, error in candidates)
             size = max(abs(tangent), noise * 1e3)
             if not sharp(output, dict(zip(point.outputs, base, strict=True))):
