@@ -118,8 +118,15 @@ def slopes(a: float, b: float, c: float, d: float, e: float, step: float) -> tup
 
 
 def best(values: list[float]) -> tuple[float, float]:
-    """The value that the next step changes least, and that change."""
+    """The value of the shortest step that the step before confirms, else that which it changes least.
+
+    With it comes that change. Near a kink, long steps agree on what is true beyond it.
+    """
     changes = [(abs(a - b), b) for a, b in itertools.pairwise(values)]
+    for limit in (1e-7, 1e-4):
+        for error, value in reversed(changes):
+            if error <= limit * abs(value):
+                return value, error
     error, value = min(changes, default=(math.inf, 0.0))
     return value, error
 
