@@ -14,7 +14,7 @@ from foreign_motors import motor2
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from motor_scenes import MOTOR
-from whole_fmus import Signals, Whole, exported
+from whole_fmus import Instance, Signals, Whole, exported
 
 from loomfmu import LoomfmuError, Result, run
 from loomfmu.cosim import whole
@@ -378,6 +378,59 @@ def test_derivatives_of_inputs_are_refused(tmp_path: Path) -> None:
     with pytest.raises(Exception, match="fmi2SetRealInputDerivatives failed"):
         instance.slave.setRealInputDerivatives([one.variables["belt.travel"].valueReference], [1], [0.0])
     assert instance.log[-1].endswith("belt.travel: input derivatives are not supported")
+
+
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_outputs_of_a_step_have_derivatives(tmp_path: Path, fmi: int) -> None:
+    """Through all steps of the components in a communication step, the last of which is shorter."""
+    scene = scenes.parse("duration = 1\nstep = 0.01\n[belt]\n", "open")
+    one = Whole(exported(scene, tmp_path, fmi=fmi), tmp_path / "unpacked")
+    names = ["belt.margin", "belt.free_length"]
+    travel, *outputs = (one.variables[name].valueReference for name in ("belt.travel", *names))
+
+    def stepped(value: float) -> Any:
+        instance = one.instance(belt__travel=0.9, belt__acceleration=50.0)
+        instance.set({"belt.travel": value})
+        instance.step(0.0, 0.025)
+        return instance
+
+    size = 1e-4
+    (below, above) = ([*stepped(0.91 + side).get(names).values()] for side in (-size, size))
+    found = stepped(0.91).slave.getDirectionalDerivative(outputs, [travel], [1.0])
+    # second-order differences: (1e-4 / 0.9)^2
+    assert found == pytest.approx(
+        [(b - a) / (2.0 * size) for a, b in zip(below, above, strict=True)], rel=1e-6
+    )
+
+
+def test_outputs_of_its_start_have_derivatives_by_parameters(tmp_path: Path) -> None:
+    """Tables of inputs lie along revolutions: at a later start the speed moves them, too."""
+    one = Whole(exported(loaded(SIMS / "worn_belt.toml"), tmp_path, fmi=3), tmp_path / "unpacked")
+    names = ["belt.margin", "belt.length_factor", "weft.velocity"]
+    outputs = [one.variables[name].valueReference for name in names]
+    speed, time = (one.variables[name].valueReference for name in ("shaft.speed", "time"))
+    start, size, base = 0.42, 1e-4, 56.0
+
+    def started(value: float, at: float = start) -> Any:
+        instance = Instance(one, "tested")
+        instance.set({"shaft.speed": value})
+        instance.slave.enterInitializationMode(startTime=at)
+        return instance
+
+    here = started(base)
+    for known, sides in (
+        (speed, (started(base - size), started(base + size))),
+        (time, (started(base, start - 1e-6), started(base, start + 1e-6))),
+    ):
+        below, above = ([*each.get(names).values()] for each in sides)
+        width = 2.0 * size if known == speed else 2e-6
+        found = here.slave.getDirectionalDerivative(outputs, [known], [1.0])
+        # second-order differences of curves that turn 20 revolutions
+        assert found == pytest.approx(
+            [(b - a) / width for a, b in zip(below, above, strict=True)], rel=1e-5, abs=1e-6
+        )
+    (adjoint,) = here.slave.getAdjointDerivative(outputs, [speed], [1.0, 0.0, 0.0], 1)
+    assert adjoint == here.slave.getDirectionalDerivative(outputs[:1], [speed], [1.0])[0]
 
 
 def test_what_cannot_be_in_it_is_refused(tmp_path: Path) -> None:

@@ -224,7 +224,16 @@ static void life(fmi2Component component)
     case 6: (void)(pick(8) ? fmi2OK : fmi2Terminate(component)); break;
     case 7: (void)(pick(20) ? fmi2OK : fmi2CancelStep(component)); break;
     case 8:
-        (void)(pick(20) ? fmi2OK : fmi2GetDirectionalDerivative(component, NULL, 0, NULL, 0, NULL, NULL));
+        if (pick(10)) {
+            break;
+        }
+        if (pick(4)) {
+            fmi2ValueReference references[2] = {pick(300), pick(300)};
+            fmi2Real reals[2] = {any_real(), any_real()};
+            (void)fmi2GetDirectionalDerivative(component, references, pick(3), references, pick(3), reals, reals);
+        } else {
+            (void)fmi2GetDirectionalDerivative(component, NULL, pick(2), NULL, pick(2), NULL, NULL);
+        }
         break;
     default: (void)(pick(4) ? fmi2OK : fmi2Reset(component)); break;
     }

@@ -126,6 +126,41 @@ class Instance:
         status = self.call(self.rates, self.references([name]), count, (c_int * 1)(order), *values)
         return status, value[0]
 
+    def read(self, names: Sequence[str]) -> tuple[int, list[float]]:
+        """The status of reading real variables in one call, and their values."""
+        word, kind = self.types["Real"]
+        values = (kind * len(names))()
+        return self.call(f"Get{word}", self.references(names), *self.several(values)), list(values)
+
+    def write(self, values: dict[str, float]) -> int:
+        """Set real variables in one call."""
+        word, kind = self.types["Real"]
+        given = (kind * len(values))(*values.values())
+        return self.call(f"Set{word}", self.references(list(values)), *self.several(given))
+
+    def several(self, values: Any) -> tuple[Any, ...]:
+        """Values as an argument, with their counts."""
+        return c_size_t(len(values)), values
+
+    def derivative(
+        self, unknowns: Sequence[str], knowns: Sequence[str], seed: Sequence[float], adjoint: bool = False
+    ) -> tuple[int, list[float]]:
+        """The status, and a sensitivity for each unknown; for each known of an adjoint derivative."""
+        seeds = (c_double * len(seed))(*seed)
+        values = (c_double * len(knowns if adjoint else unknowns))()
+        names = (
+            argument
+            for each in (unknowns, knowns)
+            for argument in (self.references(each), c_size_t(len(each)))
+        )
+        function = "GetAdjointDerivative" if adjoint else "GetDirectionalDerivative"
+        status = self.call(function, *names, *self.sensitivities(seeds, values))
+        return status, list(values)
+
+    def sensitivities(self, seeds: Any, values: Any) -> tuple[Any, ...]:
+        """Seeds and sensitivities as arguments."""
+        return seeds, values
+
     # ---- life
 
     def enter(self, start: float = 0.0, stop: float | None = None) -> int:
@@ -303,6 +338,12 @@ class Native3(Instance):
 
     def counted(self, values: Any) -> tuple[Any, ...]:
         return c_size_t(1), values, c_size_t(1)
+
+    def several(self, values: Any) -> tuple[Any, ...]:
+        return c_size_t(len(values)), values, c_size_t(len(values))
+
+    def sensitivities(self, seeds: Any, values: Any) -> tuple[Any, ...]:
+        return seeds, c_size_t(len(seeds)), values, c_size_t(len(values))
 
     def enter(self, start: float = 0.0, stop: float | None = None) -> int:
         given = (c_double(start), stop is not None, c_double(stop or 0.0))

@@ -68,6 +68,7 @@ def test_its_description_is_that_of_the_live_flavour_but_for_what_it_can_do(buil
             "canInterpolateInputs": "true",  # one without inputs has none that it could not
             "canNotUseMemoryManagementFunctions": "false",
             "maxOutputDerivativeOrder": native["maxOutputDerivativeOrder"],
+            "providesDirectionalDerivative": "true",
         }.items()
         if live.get(key) != value
     }

@@ -75,7 +75,7 @@ def test_bytes_are_the_same_for_the_same_state(native):
         contents.append(instance.packed(state))
         instance.drop(state)
     assert contents[0] == contents[1]
-    assert contents[0][:8] == b"LOOMFMU\x01" and contents[0][8:44].decode() == instance.fmu.guid
+    assert contents[0][:8] == b"LOOMFMU\x02" and contents[0][8:44].decode() == instance.fmu.guid
 
 
 def test_given_derivatives_are_part_of_the_state(native):

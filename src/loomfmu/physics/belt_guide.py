@@ -7,6 +7,7 @@ from .belt_ends import OTHER, OWN, end_slopes, turning
 from .belt_modes import dot, first_modes, size, summed
 from .belt_motion import ends_at, free_turn
 from .belt_moving import Belt, Instant
+from .numerics.brackets import at_root
 from .numerics.motion import met
 
 TOUCHING = 1e-6  # of the modes: a turn that close to the free one is at the stop
@@ -123,4 +124,5 @@ def before_switch(
             low = middle
         else:
             high = middle
-    return high
+    value, slope = met(high, step, start, start_rate, end, end_rate)
+    return at_root(high, value, slope)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from .belt import weft_load
 from .belt_ends import FreeEnds, end_amplitudes
 from .belt_modes import Bow, bow_forces
+from .numerics.brackets import at_root
 from .numerics.motion import joined_rate, joined_value
 
 
@@ -101,7 +102,8 @@ def crossing(path: Path, length: float) -> float:
             low = middle
         else:
             high = middle
-    return high
+    _start, rate, a0, a1, a2, a3 = path.joined
+    return at_root(high, length_at(path, high) - length, joined_rate(rate, a0, a1, a2, a3, high))
 
 
 def stands(path: Path) -> bool:

@@ -7,8 +7,9 @@ linear, and the power series of its solution, which converges for every step, is
 """
 
 from dataclasses import dataclass
-from math import atan2, exp, fabs, pi, sqrt
+from math import atan2, exp, fabs, log, pi, sqrt
 
+from .numerics.brackets import at_root
 from .numerics.motion import moved_on
 
 
@@ -50,13 +51,20 @@ def stop_damping_ratio(restitution: float) -> float:
     high = 1.0 - 1e-9
     for _ in range(60):
         ratio = 0.5 * (low + high)
-        root = sqrt(1.0 - ratio * ratio)
-        contact = pi - atan2(2.0 * ratio * root, 1.0 - 2.0 * ratio * ratio)
-        if exp(-ratio / root * contact) > restitution:
+        if exp(-_decay(ratio)) > restitution:
             low = ratio
         else:
             high = ratio
-    return 0.5 * (low + high)
+    ratio = 0.5 * (low + high)
+    rest = 1.0 - ratio * ratio
+    slope = _decay(ratio) / (ratio * rest) - 2.0 * ratio / rest
+    return at_root(ratio, _decay(ratio) + log(restitution), slope) if ratio > 1e-9 else ratio
+
+
+def _decay(ratio: float) -> float:
+    """Decay of the speed in a contact, as the exponent of `stop_damping_ratio`."""
+    root = sqrt(1.0 - ratio * ratio)
+    return ratio / root * (pi - atan2(2.0 * ratio * root, 1.0 - 2.0 * ratio * ratio))
 
 
 @dataclass(frozen=True)

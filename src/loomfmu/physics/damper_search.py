@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from math import fabs, sqrt
 
 from .damper import Swing, drive_at, propagate
+from .numerics.brackets import at_root
 
 # Followed along a piece: a gauge, linear in position and rate, or the first derivative of one
 LEVEL = 0
@@ -186,7 +187,8 @@ def locate(gauge: Gauge, swing: Swing, low: float, high: float, at_low: float, a
             if last == -1:
                 at_high = 0.5 * at_high
             last = -1
-    return high
+    value, slope = gauge_at(gauge, swing, high)
+    return at_root(high, value, slope)
 
 
 @dataclass(frozen=True)

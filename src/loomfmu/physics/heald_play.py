@@ -13,6 +13,7 @@ Between two samples a is a cubic and f a straight line, so w is a quintic in tim
 from math import fabs
 
 from .damper_search import safe_stride
+from .numerics.brackets import at_root
 from .numerics.motion import moved_on
 
 MOST_STRIDES = 1000
@@ -71,9 +72,9 @@ def until_bar(
         above = w - reach
         below = -w - reach
         if above >= -REACHED * reach and v > 0.0:
-            return time, 1
+            return at_root(time, above, v) if time > 0.0 else time, 1
         if below >= -REACHED * reach and v < 0.0:
-            return time, -1
+            return at_root(time, below, -v) if time > 0.0 else time, -1
         up = clear_stride(above if above < 0.0 else 0.0, v, acceleration, most, most_jerk)
         down = clear_stride(below if below < 0.0 else 0.0, -v, -acceleration, most, most_jerk)
         stride = up if up < down else down
@@ -95,7 +96,7 @@ def until_free(side: int, q0: float, q1: float, q2: float, q3: float, duration: 
         press = side * (q0 + time * (q1 + time * (q2 + time * q3)))
         slope = side * (q1 + time * (2.0 * q2 + time * 3.0 * q3))
         if (press <= 0.0 and slope < 0.0) or press < 0.0:
-            return time
+            return at_root(time, press, slope) if time > 0.0 else time
         stride = safe_stride(-press, -slope, most)
         if stride >= duration - time:
             return duration

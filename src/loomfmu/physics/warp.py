@@ -8,6 +8,8 @@ the moments of a fading memory, which are computed without cancellation for ever
 
 from math import exp, fabs, sqrt
 
+from .numerics.brackets import at_root
+
 
 def eye_pull(height: float, front: float, back: float) -> float:
     """Share of its tension with which a thread pulls its heald eye back: the sines of its two parts, added.
@@ -264,4 +266,7 @@ def thread_locate(
             if last == -1:
                 at_high = 0.5 * at_high
             last = -1
-    return high
+    if turn:
+        return high
+    value, _area = thread_force(force, decay, p, high)
+    return at_root(high, value - level, thread_growth(value, decay, p, high))

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from math import fabs, floor, pi
 
 from .hung_warp import cubic_between
+from .numerics.brackets import at_root
 from .shaft import FARTHEST
 from .weft import along, drawing_limit, eased, moving_load, moving_load_rate, relaxed_force, stretch_force
 
@@ -245,7 +246,13 @@ def passage(way: Way, kind: int, level: float, before: bool, low: float, high: f
             low = middle
         else:
             high = middle
-    return high
+    _value, first, second, _third = along(high, way.travel)
+    if kind == POINT:
+        _angle, turning, _second, _third = along(high, way.angle)
+        return at_root(high, place_at(way, high) - level, turning * PROGRAM_POINTS / (2.0 * pi))
+    if kind == PLACE:
+        return at_root(high, travel_at(way, high) - level, first)
+    return at_root(high, first - level, second)
 
 
 def crossing(drawn: Drawn, kind: int, before: bool, low: float, high: float) -> float:
@@ -264,6 +271,10 @@ def crossing(drawn: Drawn, kind: int, before: bool, low: float, high: float) -> 
             low = middle
         else:
             high = middle
+    if kind == YIELD:
+        return at_root(high, surplus_at(drawn, high), surplus_rate_at(drawn, high))
+    if kind == SLACK:
+        return at_root(high, tension_at(drawn, high), tension_rate_at(drawn, high))
     return high
 
 

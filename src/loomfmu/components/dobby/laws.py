@@ -7,7 +7,7 @@ from math import asin, fabs, floor, inf, pi, sqrt
 from typing import Any, ClassVar
 
 from ...declaring.variables import Problem
-from ...physics.numerics.brackets import nearer_root
+from ...physics.numerics.brackets import at_root, nearer_root
 from ...physics.numerics.spline import Cubic, cubic_piece, slope_extremes, stretch_above, turning_points
 from ...physics.rotor_laws.mechanisms import (
     NONCIRCULAR_GEARS,
@@ -276,4 +276,5 @@ class RotorLaws(LawParameters):
             if nearer == x or high - low <= 1e-16 * high:
                 break
             x = nearer
-        return x + 2.0 * pi * turns
+        reached, first, _second = self.rotor(x)
+        return at_root(x, reached - target, first) + 2.0 * pi * turns

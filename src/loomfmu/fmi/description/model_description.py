@@ -48,6 +48,8 @@ def _interfaces(root: Element, component: type[Component], native: dict[str, str
         "canGetAndSetFMUstate": "true",
         "canSerializeFMUstate": "true",
     }
+    if native is not None:
+        capabilities["providesDirectionalDerivative"] = "true"
     steps = {"canHandleVariableCommunicationStepSize": "true", "canInterpolateInputs": "false"}
     interfaces = {"CoSimulation": capabilities | steps | (native or {})}
     if native is not None and component.keeps == NOTHING:

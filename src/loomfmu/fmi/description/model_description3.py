@@ -25,7 +25,13 @@ def model_description3(component: type[Component], token: str, version: str) -> 
         "fmiModelDescription",
         {"fmiVersion": "3.0", "modelName": name, "instantiationToken": token} | about(component, version),
     )
-    common = {"modelIdentifier": name, "canGetAndSetFMUState": "true", "canSerializeFMUState": "true"}
+    common = {
+        "modelIdentifier": name,
+        "canGetAndSetFMUState": "true",
+        "canSerializeFMUState": "true",
+        "providesDirectionalDerivatives": "true",
+        "providesAdjointDerivatives": "true",
+    }
     if component.keeps == NOTHING:
         SubElement(root, "ModelExchange", common | {"needsCompletedIntegratorStep": "true"})
     order = str(output_order(component))

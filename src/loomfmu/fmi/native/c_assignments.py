@@ -5,23 +5,21 @@ from collections.abc import Iterator
 
 from .c_code import (
     ARRAYS,
-    NAMES,
     REAL,
     TYPES,
     WHOLE,
     Array,
     Code,
     Kind,
-    Scope,
     Untranslatable,
     c_name,
     fits,
     literal,
     of_self,
     shown,
-    widened,
 )
 from .c_expressions import Expressions
+from .c_scope import Scope
 
 
 class Assignments:
@@ -99,7 +97,7 @@ class Assignments:
         if annotated and annotated not in TYPES and not fits(code.type, annotated):
             raise Untranslatable(value, f"{ast.unparse(value)} is {shown(code.type)}, not {annotated}")
         put, kind = self._place(target, code.type)
-        text = put % widened(code, kind, value).text
+        text = put % self.scope.numbers.widened(code, kind, value).text
         if not inner:
             yield f"{indent}{text};"
             return
@@ -136,7 +134,7 @@ class Assignments:
         index, within = self.expressions.index(target, size)
         if within:
             return f"{place}[{index}] = %s", kind
-        return f"python_put_{NAMES[kind]}({place}, {size}, {index}, %s)", kind
+        return f"python_put_{self.scope.numbers.named(kind)}({place}, {size}, {index}, %s)", kind
 
     def _unpacked(self, targets: list[ast.expr], value: ast.expr, indent: str) -> Iterator[str]:
         """Several values, all of them computed before the first is put in its place."""
@@ -145,8 +143,10 @@ class Assignments:
         if isinstance(value, ast.Tuple):
             codes = [self._made(each, inner, lines) for each in value.elts]
             found = [(f"value_{place}", code.type) for place, code in enumerate(codes)]
+            kinds = [self.scope.numbers.text(code.type) for code in codes]
             lines += [
-                f"{inner}const {code.type} value_{place} = {code.text};" for place, code in enumerate(codes)
+                f"{inner}const {kind} value_{place} = {code.text};"
+                for place, (kind, code) in enumerate(zip(kinds, codes, strict=True))
             ]
         else:
             found = self._found(value, inner, lines)
@@ -157,7 +157,8 @@ class Assignments:
         for target, (given, kind) in zip(targets, found, strict=True):
             put, wanted = self._place(target, kind)
             if isinstance(value, ast.Tuple) or not put.startswith("(void)"):
-                yield f"{inner}{put % widened(Code(given, kind), wanted, value).text};"
+                text = self.scope.numbers.widened(Code(given, kind), wanted, value).text
+                yield f"{inner}{put % text};"
         yield f"{indent}}}"
 
     def _found(self, value: ast.expr, inner: str, lines: list[str]) -> list[tuple[str, Kind]]:

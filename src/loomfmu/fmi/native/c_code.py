@@ -5,8 +5,8 @@ Python's `float` is `double` here, its `int` is `int64_t`.
 
 import ast
 import math
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from collections.abc import Iterable
+from dataclasses import dataclass
 
 REAL, WHOLE, TRUTH = "double", "int64_t", "bool"
 TYPES = {"float": REAL, "int": WHOLE, "bool": TRUTH}
@@ -86,57 +86,6 @@ class Signature:
     results: Results
 
 
-@dataclass
-class Scope:
-    """Meaning of the names in a function: its locals, the component's variables, functions and constants."""
-
-    component: str
-    functions: dict[str, Declared]
-    methods: dict[str, Declared]
-    records: dict[str, dict[str, str]]  # the fields of each, with their annotations
-    variables: dict[str, str]  # of the component, as C calls them, with their types
-    arrays: dict[str, tuple[str, ...]]  # of the component, with the names of their elements
-    constants: dict[str, float | int]
-    tables: dict[str, tuple[float | int, ...]]  # constants that are several numbers
-    from_math: frozenset[str]
-    changes: dict[str, frozenset[str]]  # the variables that each method changes, those that it calls included
-    structs: dict[str, str] = field(
-        default_factory=dict
-    )  # declarations of structs and tables, in their order
-    locals: dict[str, Kind] = field(default_factory=dict)
-    # translates a function for arguments of these types, unless it is already
-    translated: Callable[[Declared, tuple[Kind, ...]], Signature] = lambda declared, kinds: Signature(
-        "", (), ()
-    )
-    lent: frozenset[str] = frozenset()  # arguments that are pointers
-    renamed: dict[str, str] = field(default_factory=dict)  # the variable of a comprehension
-    spans: dict[str, tuple[int, int]] = field(
-        default_factory=dict
-    )  # first and last value of a loop's variable
-
-    def array(self, element: str, size: int) -> Array:
-        """The type of an array, declared in C."""
-        kind = Array(self.component, element, size)
-        self.structs[str(kind)] = f"{kind} {{ {element} at[{size}]; }};"
-        return kind
-
-    def record(self, name: str, kinds: Iterable[Kind]) -> Record:
-        """The type of a record with fields of these types, declared in C."""
-        kind = Record(self.component, name, tuple(zip(self.records[name], kinds, strict=True)))
-        members = " ".join(f"{each} {c_name(field)};" for field, each in kind.fields)
-        self.structs[str(kind)] = f"{kind} {{ {members} }};"
-        return kind
-
-    def returned(self, results: Results) -> str:
-        """The C type of what a function returns; several values come in a struct, declared in C."""
-        if len(results) < 2:
-            return str(results[0]) if results else "void"
-        name = f"struct {self.component}_{''.join(map(_short, results))}"
-        members = " ".join(f"{kind} value_{place};" for place, kind in enumerate(results))
-        self.structs[name] = f"{name} {{ {members} }};"
-        return name
-
-
 def sizes(kinds: Iterable[Kind]) -> str:
     """Tell types apart that are annotated alike, by the sizes of their arrays."""
     found = ""
@@ -155,7 +104,8 @@ def shown(kind: Kind) -> str:
     return kind.name if isinstance(kind, Record) else NAMES[kind]
 
 
-def _short(kind: Kind) -> str:
+def short(kind: Kind) -> str:
+    """A type in the names of structs that hold several values."""
     if isinstance(kind, Array):
         return f"{NAMES[kind.element][0]}{kind.size}"
     return f"{kind.name}{sizes([kind])}" if isinstance(kind, Record) else NAMES[kind][0]
@@ -178,17 +128,6 @@ def literal(value: float | int | bool) -> Code:
 def within(code: Code, level: int) -> str:
     """The text of an operand, in parentheses if it binds more loosely than that."""
     return code.text if code.level >= level else f"({code.text})"
-
-
-def widened(code: Code, kind: Kind, node: ast.AST) -> Code:
-    """An expression as another type: what Python takes for equal, and nothing else."""
-    if code.type == kind:
-        return code
-    if kind == REAL and code.number is not None:
-        return literal(float(code.number))
-    if (code.type, kind) in ((WHOLE, REAL), (TRUTH, REAL), (TRUTH, WHOLE)):
-        return Code(f"({kind}){within(code, ATOM)}", kind, UNARY)
-    raise Untranslatable(node, f"{ast.unparse(node)} is {shown(code.type)} where {shown(kind)} is needed")
 
 
 def declared(function: ast.FunctionDef, name: str, method: bool, records: Iterable[str]) -> Declared:
@@ -256,6 +195,7 @@ KEYWORDS = frozenset(
         "default",
         "do",
         "double",
+        "dual",
         "else",
         "enum",
         "extern",

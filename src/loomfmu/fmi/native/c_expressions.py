@@ -11,7 +11,6 @@ from .c_code import (
     ATOM,
     BITS,
     EQUAL,
-    NAMES,
     OR,
     ORDER,
     PRODUCT,
@@ -25,11 +24,10 @@ from .c_code import (
     WHOLE,
     Code,
     Untranslatable,
-    literal,
     shown,
-    widened,
     within,
 )
+from .c_numbers import DUAL
 from .c_values import Values
 
 ARITHMETIC: dict[type[ast.operator], tuple[str, int]] = {
@@ -87,6 +85,7 @@ REAL_FUNCTIONS = {
     ),
     **dict.fromkeys(("atan2", "copysign", "fmod", "pow"), 2),
 }
+AT_ROOT = "at_root"  # of the physics, which with dual numbers is one of dual.h
 WHOLE_FUNCTIONS = ("floor", "ceil", "trunc")
 TRUTH_FUNCTIONS = ("isfinite", "isinf", "isnan")
 
@@ -106,7 +105,7 @@ class Expressions(Values):
     def _constant(self, node: ast.Constant) -> Code:
         if not isinstance(node.value, bool | int | float):
             raise Untranslatable(node, f"{node.value!r} is not a number")
-        return literal(node.value)
+        return self.scope.numbers.literal(node.value)
 
     def _unaryop(self, node: ast.UnaryOp) -> Code:
         if isinstance(node.op, ast.Not):
@@ -117,8 +116,8 @@ class Expressions(Values):
         if isinstance(node.op, ast.UAdd):
             return operand
         if operand.number is not None:
-            return literal(-operand.number)
-        return Code(f"-{within(operand, ATOM)}", operand.type, UNARY)
+            return self.scope.numbers.literal(-operand.number)
+        return self.scope.numbers.negated(operand)
 
     def _binop(self, node: ast.BinOp) -> Code:
         operation = type(node.op)
@@ -130,21 +129,24 @@ class Expressions(Values):
         if operation is ast.Pow:
             if REAL not in (left.type, right.type):
                 raise Untranslatable(node, "a power of whole numbers is not in the subset")
-            return Code(f"pow({self._real(node.left)}, {self._real(node.right)})", REAL)
+            return self._function("pow", [node.left, node.right])
         kind = WHOLE if left.type == right.type == WHOLE and operation is not ast.Div else REAL
         if operation in DIVISIONS:
             one, other = self.as_type(node.left, kind).text, self.as_type(node.right, kind).text
-            return Code(f"python_{DIVISIONS[operation]}_{NAMES[kind]}({one}, {other})", kind)
+            return Code(
+                f"python_{DIVISIONS[operation]}_{self.scope.numbers.named(kind)}({one}, {other})", kind
+            )
         if operation not in ARITHMETIC:
             raise Untranslatable(node, f"{operation.__name__} is not in the subset")
         symbol, level = ARITHMETIC[operation]
-        left, right = widened(left, kind, node.left), widened(right, kind, node.right)
-        shown = within(right, level + 1)
-        shown = f"({shown})" if shown.startswith("-") else shown
-        return Code(f"{within(left, level)} {symbol} {shown}", kind, level)
+        numbers = self.scope.numbers
+        left, right = numbers.widened(left, kind, node.left), numbers.widened(right, kind, node.right)
+        return numbers.combined(symbol, level, left, right)
 
-    def _real(self, node: ast.expr) -> str:
-        return self.as_type(node, REAL).text
+    def _function(self, name: str, given: list[ast.expr]) -> Code:
+        """A function of libm."""
+        arguments = ", ".join(self.as_type(each, REAL).text for each in given)
+        return Code(f"{self.scope.numbers.prefix}{name}({arguments})", REAL)
 
     def _bits(self, node: ast.BinOp) -> Code:
         symbol, level = BITWISE[type(node.op)]
@@ -167,7 +169,9 @@ class Expressions(Values):
         symbol, level = COMPARISONS[type(sign)]
         left, right = self.of(one), self.of(other)
         kind = next(each for each in (REAL, WHOLE, TRUTH) if each in (left.type, right.type))
-        left, right = widened(left, kind, one), widened(right, kind, other)
+        numbers = self.scope.numbers
+        left = numbers.value(numbers.widened(left, kind, one))
+        right = numbers.value(numbers.widened(right, kind, other))
         return Code(f"{within(left, SHIFT)} {symbol} {within(right, SHIFT)}", TRUTH, level)
 
     def _boolop(self, node: ast.BoolOp) -> Code:
@@ -177,11 +181,17 @@ class Expressions(Values):
     def _ifexp(self, node: ast.IfExp) -> Code:
         then, otherwise = self.of(node.body), self.of(node.orelse)
         kind = next(each for each in (REAL, WHOLE, TRUTH) if each in (then.type, otherwise.type))
-        then, otherwise = widened(then, kind, node.body), widened(otherwise, kind, node.orelse)
+        numbers = self.scope.numbers
+        then, otherwise = (
+            numbers.widened(then, kind, node.body),
+            numbers.widened(otherwise, kind, node.orelse),
+        )
         asked = within(self.condition(node.test), OR)
         return Code(f"{asked} ? {within(then, OR)} : {within(otherwise, TERNARY)}", kind, TERNARY)
 
     def _call(self, node: ast.Call) -> Code:
+        if isinstance(node.func, ast.Name) and node.func.id == AT_ROOT and self.scope.numbers is DUAL:
+            return self._function(AT_ROOT, node.args)
         if self.is_ours(node):
             text, results = self.call(node)
             if len(results) != 1:
@@ -198,22 +208,22 @@ class Expressions(Values):
             return self.copied(node.args[0]) if name == "list" else self.length(node.args[0])
         if name not in self.scope.from_math:
             raise Untranslatable(node, f"{name} is neither of math nor a function of the physics")
-        arguments = ", ".join(self._real(given) for given in node.args)
         if len(node.args) != REAL_FUNCTIONS.get(name, 1):
             raise Untranslatable(node, f"{name} takes {REAL_FUNCTIONS.get(name, 1)} arguments")
         if name in REAL_FUNCTIONS:
-            return Code(f"{name}({arguments})", REAL)
+            return self._function(name, node.args)
+        value = self.scope.numbers.value(self.as_type(node.args[0], REAL)).text
         if name in WHOLE_FUNCTIONS:
-            return Code(f"python_whole({name}({arguments}))", WHOLE)
+            return Code(f"python_whole({name}({value}))", WHOLE)
         if name in TRUTH_FUNCTIONS:
-            return Code(f"({name}({arguments}) != 0)", TRUTH)
+            return Code(f"({name}({value}) != 0)", TRUTH)
         raise Untranslatable(node, f"math.{name} gives other bits in C than in Python")
 
     def _converted(self, node: ast.expr, kind: str) -> Code:
         code = self.of(node)
         if kind == WHOLE and code.type == REAL:
-            return Code(f"python_whole({code.text})", WHOLE)
-        return widened(code, kind, node)
+            return Code(f"python_whole({self.scope.numbers.value(code).text})", WHOLE)
+        return self.scope.numbers.widened(code, kind, node)
 
 
 def _joined(symbol: str, level: int, parts: list[Code]) -> Code:

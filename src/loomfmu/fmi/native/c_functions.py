@@ -12,7 +12,6 @@ from .c_code import (
     Code,
     Declared,
     Kind,
-    Scope,
     Signature,
     Untranslatable,
     c_name,
@@ -21,8 +20,8 @@ from .c_code import (
     of_self,
     shown,
     sizes,
-    widened,
 )
+from .c_scope import Scope
 
 
 class FunctionWriter(Assignments):
@@ -59,7 +58,7 @@ class FunctionWriter(Assignments):
         for place, (name, kind) in enumerate(self.arguments.items()):
             pointer = "" if isinstance(kind, str) else "*"
             constant = "const " if pointer and place not in self.own.written else ""
-            given.append(f"{constant}{kind} {pointer}{c_name(name)}")
+            given.append(f"{constant}{self.scope.numbers.text(kind)} {pointer}{c_name(name)}")
         kind = self.scope.returned(self.signature.results)
         return f"static {kind} {self.name}({', '.join(given) or 'void'})"
 
@@ -71,7 +70,7 @@ class FunctionWriter(Assignments):
         unused = [name for name in self.arguments if name not in self.read]
         unused = ["self"] * (self.own.method and "self" not in self.read) + unused
         declared = {name: kind for name, kind in self.scope.locals.items() if name not in self.arguments}
-        head = [f"    {kind} {c_name(name)};" for name, kind in declared.items()]
+        head = [f"    {self.scope.numbers.text(kind)} {c_name(name)};" for name, kind in declared.items()]
         head += [f"    (void){c_name(name)};" for name in unused]
         about = comment(text, "") if text else []
         return "\n".join([*about, self.prototype, "{", *head, *lines, "}", ""])
@@ -174,7 +173,7 @@ class FunctionWriter(Assignments):
             if not fits(code.type, annotated):
                 raise Untranslatable(node, f"{ast.unparse(node)} is {shown(code.type)}, not {annotated}")
             wanted = self.results[place] = code.type
-        return widened(code, wanted, node).text
+        return self.scope.numbers.widened(code, wanted, node).text
 
     def _several(self, node: ast.expr) -> str:
         """A call that returns several values, of the types that are declared."""

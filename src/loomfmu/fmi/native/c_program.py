@@ -3,8 +3,9 @@
 import ast
 from dataclasses import replace
 
-from .c_code import Declared, Kind, Scope, Signature, Untranslatable, declared, sizes
+from .c_code import Declared, Kind, Signature, Untranslatable, declared, sizes
 from .c_functions import FunctionWriter
+from .c_scope import Scope
 
 Functions = dict[str, ast.FunctionDef]
 

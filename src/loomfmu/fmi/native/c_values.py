@@ -18,15 +18,15 @@ from .c_code import (
     Kind,
     Record,
     Results,
-    Scope,
     Untranslatable,
     c_name,
     fits,
     literal,
     of_self,
     shown,
-    widened,
 )
+from .c_numbers import PLAIN
+from .c_scope import Scope
 
 
 class Values:
@@ -52,7 +52,7 @@ class Values:
 
     def as_type(self, node: ast.expr, kind: Kind) -> Code:
         """An expression as a type."""
-        return widened(self.any_of(node), kind, node)
+        return self.scope.numbers.widened(self.any_of(node), kind, node)
 
     def made(self, node: ast.expr) -> Code:
         """As `any_of`, but no array that has a name already."""
@@ -141,6 +141,7 @@ class Values:
         codes = {}
         for field, annotated in annotations.items():
             code = self.made(given[field])
+            widened = self.scope.numbers.widened
             codes[field] = widened(code, annotated, given[field]) if annotated in NAMES else code
             if not fits(codes[field].type, annotated):
                 raise Untranslatable(given[field], f"{field} is {shown(code.type)}, not {annotated}")
@@ -156,7 +157,7 @@ class Values:
             text = scope.renamed.get(node.id, c_name(node.id))
             return Code(f"(*{text})" if node.id in scope.lent else text, scope.locals[node.id])
         if node.id in scope.constants:
-            return literal(scope.constants[node.id])
+            return scope.numbers.literal(scope.constants[node.id])
         if node.id in scope.tables:
             raise Untranslatable(
                 node, f"{node.id} is several numbers: read {node.id}[index] or list({node.id})"
@@ -194,8 +195,10 @@ class Values:
         if name in scope.tables and name not in scope.locals:
             table = [literal(value) for value in scope.tables[name]]
             place, kind = f"{scope.component}_{c_name(name)}", _element(table)
-            values = ", ".join(widened(code, kind, array).text for code in table)
-            scope.structs[place] = f"static const {kind} {place}[{len(table)}] = {{{values}}};"
+            values = ", ".join(scope.numbers.initial(PLAIN.widened(code, kind, array)) for code in table)
+            scope.structs[place] = (
+                f"static const {scope.numbers.text(kind)} {place}[{len(table)}] = {{{values}}};"
+            )
             return place, kind, len(table)
         code = self.any_of(array) if not of_self(array) else None
         if code is None:
@@ -239,7 +242,7 @@ class Values:
         index, within = self.index(node, size)
         if within:
             return Code(f"{place}[{index}]", kind)
-        return Code(f"python_item_{NAMES[kind]}({place}, {size}, {index})", kind)
+        return Code(f"python_item_{self.scope.numbers.named(kind)}({place}, {size}, {index})", kind)
 
     # ---- lists
 
@@ -249,7 +252,8 @@ class Values:
             raise Untranslatable(node, "an array has one element or more")
         kind = _element(codes)
         array = self.scope.array(kind, len(codes))
-        return Code(f"({array}){{{{{', '.join(widened(code, kind, node).text for code in codes)}}}}}", array)
+        elements = ", ".join(self.scope.numbers.widened(code, kind, node).text for code in codes)
+        return Code(f"({array}){{{{{elements}}}}}", array)
 
     def _list(self, node: ast.List) -> Code:
         return self.listed([self.of(each) for each in node.elts], node)

@@ -15,7 +15,7 @@ from ..fmu_files import FMU, HEADERS, beside, described, file_in, license_of, li
 from ..live_fmu import guid
 from .compiler import ARITHMETIC, MINGW, binaries, mingw_licence
 from .platforms import PLATFORMS
-from .tables import tables
+from .tables import dual_tables, tables
 from .translate import Translation, translate
 
 SHELL = Path(__file__).with_name("shell")
@@ -37,6 +37,9 @@ PAGE = 0  # not a version of FMI: the shell of a page in a browser
 SHELL_FILES = {
     PAGE: ("page.c",),
     2: (
+        "dual.h",
+        "dual_grid.h",
+        "derivatives.c",
         "carry.c",
         "fmi2.c",
         "fmi2_solver.c",
@@ -47,6 +50,9 @@ SHELL_FILES = {
         "fmi2Functions.h",
     ),
     3: (
+        "dual.h",
+        "dual_grid.h",
+        "derivatives.c",
         "fmi3.c",
         "fmi3_solver.c",
         "fmi3_values.c",
@@ -150,12 +156,17 @@ def _description(component: type[Component], token: str, fmi: int, capabilities:
 
 def sources(component: type[Component], fmi: int = 2) -> dict[str, str]:
     """The C text of a native FMU: shell, tables, translated component, headers of the standard."""
-    return with_shell(translate(component), tables(component, guid(component)), fmi)
+    return with_shell(translate(component), tables(component, guid(component)), dual_tables(component), fmi)
 
 
-def with_shell(translated: Translation, model: str, fmi: int) -> dict[str, str]:
-    """A translation and the tables of its variables with a shell, and the headers of its standard."""
+def with_shell(translated: Translation, model: str, dual_model: str, fmi: int) -> dict[str, str]:
+    """A translation and the tables of its variables with a shell, and the headers of its standard.
+
+    A page takes no derivatives.
+    """
     files = {"component.h": translated.header, "component.c": translated.code, "model.h": model}
+    if fmi != PAGE:
+        files |= {"component_dual.c": translated.dual_code, "model_dual.h": dual_model}
     for file in (*COMMON_FILES, *SHELL_FILES[fmi]):
         place = SHELL if (SHELL / file).exists() else HEADERS
         files[file] = (place / file).read_text("utf-8")

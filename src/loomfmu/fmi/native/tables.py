@@ -10,6 +10,7 @@ from ...declaring.variables import AT_STEP_END, NOTHING, Component, Variable, va
 from ..description.references import FIRST_REFERENCE
 from ..live.live_slave import CATEGORIES, DISCARD, ERROR, WARNING
 from .c_code import c_name
+from .c_numbers import DUAL
 
 KINDS = {float: "REAL", int: "INTEGER", bool: "BOOLEAN"}
 
@@ -77,6 +78,29 @@ static const char *const categories[CATEGORIES] = {{{categories}}};
 """
 
 
+DUAL_MODEL = """/* {name} with dual numbers: where its variables are, and what is started and stepped. */
+#ifndef MODEL_DUAL_H
+#define MODEL_DUAL_H
+
+typedef struct {prefix}{name} DualComponent;
+
+typedef struct {{
+    int64_t (*initialize)(DualComponent *, dual);
+    int64_t (*step)(DualComponent *, dual, dual);
+}} DualPart;
+
+static const DualPart dual_parts[PARTS] = {{
+{parts}
+}};
+
+static const size_t dual_offsets[VARIABLES] = {{
+{offsets}
+}};
+
+#endif
+"""
+
+
 @dataclass(frozen=True)
 class Part:
     """Return the C of what the shell starts and steps, and the number of problems that it reports."""
@@ -93,7 +117,7 @@ def tables(component: type[Component], token: str, parts: Sequence[Part] = (), i
     expression in C for the step of a system that has a grid of its own.
     """
     name = component.__name__
-    parts = parts or [Part(f"{name}__initialize", f"{name}__step", len(component.problems))]
+    parts = parts or _itself(component)
     variables = variables_of(component)
     names = [variable.name for variable in variables]
     _check_problems(component, names)
@@ -124,6 +148,23 @@ def tables(component: type[Component], token: str, parts: Sequence[Part] = (), i
     )
 
 
+def dual_tables(component: type[Component], parts: Sequence[Part] = ()) -> str:
+    """The text of model_dual.h, for the derivatives of the outputs."""
+    prefix = DUAL.prefix
+    stepped = [
+        f"    {{{prefix}{part.initialize}, {prefix}{part.step}}}," for part in parts or _itself(component)
+    ]
+    offsets = [f"    {_offset(variable, 'DualComponent')}," for variable in variables_of(component)]
+    return DUAL_MODEL.format(
+        name=component.__name__, prefix=prefix, parts="\n".join(stepped), offsets="\n".join(offsets)
+    )
+
+
+def _itself(component: type[Component]) -> list[Part]:
+    name = component.__name__
+    return [Part(f"{name}__initialize", f"{name}__step", len(component.problems))]
+
+
 def _part(part: Part, before: Sequence[Part]) -> str:
     first = sum(each.problems for each in before)
     return f"    {{{part.initialize}, {part.step}, {first}, {part.problems}}},\n"
@@ -135,8 +176,8 @@ def _finite(variables: Sequence[Variable]) -> list[Variable]:
     return computed + computed[-1:] * (-len(computed) % 4)
 
 
-def _offset(variable: Variable) -> str:
-    return f"offsetof(Component, {c_name(variable.member)})"
+def _offset(variable: Variable, struct: str = "Component") -> str:
+    return f"offsetof({struct}, {c_name(variable.member)})"
 
 
 def _row(variable: Variable, names: list[str]) -> str:

@@ -8,20 +8,27 @@ import ast
 import io
 import math
 import tokenize
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import groupby
 from pathlib import Path
-from threading import Lock
+from threading import RLock
 from typing import Any
 
 from ...declaring.variables import Component, Variable, arrays_of, variables_of
 from ...errors import LoomfmuError
 from .. import source
-from .c_code import TYPES, Scope, Untranslatable, c_name, comment, literal, of_self
+from .c_code import TYPES, Untranslatable, c_name, comment, literal, of_self
+from .c_numbers import DUAL, PLAIN, Numbers
 from .c_program import Program
+from .c_scope import Scope
 
 ENTRIES = ("initialize", "step")  # what the shell calls
 INCLUDES = '#include "component.h"\n#include "python_arithmetic.h"\n'
+DUAL_INCLUDES = (
+    '/* With dual numbers: each value brings its derivative in one direction. */\n#include "dual.h"\n'
+)
 HEADER = """{about}#ifndef COMPONENT_H
 #define COMPONENT_H
 
@@ -39,22 +46,45 @@ class TranslationError(LoomfmuError):
 
 
 @dataclass(frozen=True)
-class Translation:
-    """A component in C: the struct of its variables, and the functions."""
+class Written:
+    """A component in C with one type of numbers: the struct of its variables, and the functions."""
 
-    name: str
     struct: str
     functions: str
+
+
+@dataclass(frozen=True)
+class Translation:
+    """A component in C, with plain numbers and with dual ones, each written when it is first used."""
+
+    name: str
+    written: Callable[[Numbers], Written]
+
+    @cached_property
+    def plain(self) -> Written:
+        """With plain numbers."""
+        return self.written(PLAIN)
+
+    @cached_property
+    def dual(self) -> Written:
+        """With dual numbers."""
+        with _one_at_a_time:
+            return self.written(DUAL)
 
     @property
     def header(self) -> str:
         """The text of component.h."""
-        return HEADER.format(about=self._about, struct=self.struct)
+        return HEADER.format(about=self._about, struct=self.plain.struct)
 
     @property
     def code(self) -> str:
         """The text of component.c."""
-        return f"{self._about}{INCLUDES}\n{self.functions}"
+        return f"{self._about}{INCLUDES}\n{self.plain.functions}"
+
+    @property
+    def dual_code(self) -> str:
+        """The text of component_dual.c."""
+        return f"{self._about}{DUAL_INCLUDES}\n{self.dual.struct}\n\n{self.dual.functions}"
 
     @property
     def _about(self) -> str:
@@ -62,7 +92,7 @@ class Translation:
 
 
 _done: dict[type[Component], Translation] = {}
-_one_at_a_time = Lock()  # Python 3.11 may fail with a SystemError where two threads parse
+_one_at_a_time = RLock()  # Python 3.11 may fail with a SystemError where two threads parse
 
 
 def translate(component: type[Component]) -> Translation:
@@ -79,21 +109,26 @@ def translate(component: type[Component]) -> Translation:
 def _translated(component: type[Component]) -> Translation:
     text = source.flatten(component)
     tree = ast.parse(text)
+    found = Translation(
+        component.__name__, lambda numbers: _written(component, tree, _comments(text), numbers)
+    )
     try:
-        code = _code(component, tree, _comments(text))
+        _ = found.plain  # what translates with plain numbers does so with dual ones
     except Untranslatable as error:
         raise _located(component, text, tree, error) from None
-    return Translation(component.__name__, _struct(component), code)
+    return found
 
 
-def _code(component: type[Component], tree: ast.Module, comments: dict[int, str]) -> str:
+def _written(
+    component: type[Component], tree: ast.Module, comments: dict[int, str], numbers: Numbers
+) -> Written:
     classes = {node.name: node for node in tree.body if isinstance(node, ast.ClassDef)}
     own = classes.pop(component.__name__)
     arrays = arrays_of(component)  # properties in Python, members in C
     methods = {name: node for name, node in _functions(own.body).items() if name not in arrays}
     constants = _constants(tree)
     scope = Scope(
-        component=component.__name__,
+        component=numbers.prefix + component.__name__,
         functions={},
         methods={},
         records={name: _fields(node) for name, node in classes.items()},
@@ -103,9 +138,12 @@ def _code(component: type[Component], tree: ast.Module, comments: dict[int, str]
         tables={name: value for name, value in constants.items() if isinstance(value, tuple)},
         from_math=frozenset(_imported(tree)),
         changes={method: frozenset(_changed(method, methods, set())) for method in methods},
+        numbers=numbers,
     )
     structs, prototypes, definitions = Program(scope, _functions(tree.body), methods, comments).text(*ENTRIES)
-    return "\n\n".join(part for part in (structs, prototypes, f"{_start(component)}\n{definitions}") if part)
+    start = f"{_start(component)}\n" if numbers is PLAIN else ""
+    functions = "\n\n".join(part for part in (structs, prototypes, start + definitions) if part)
+    return Written(_struct(component, numbers), functions)
 
 
 def _functions(body: list[ast.stmt]) -> dict[str, ast.FunctionDef]:
@@ -158,20 +196,20 @@ def _comments(text: str) -> dict[int, str]:
 # ---- the struct
 
 
-def _struct(component: type[Component]) -> str:
+def _struct(component: type[Component], numbers: Numbers) -> str:
     """The struct of the variables, each with its unit and description."""
     members = groupby(variables_of(component), lambda variable: variable.member.partition("[")[0])
-    lines = [_member(name, list(same)) for name, same in members]
-    return "\n".join([f"struct {component.__name__} {{", *lines, "};"])
+    lines = [_member(name, list(same), numbers) for name, same in members]
+    return "\n".join([f"struct {numbers.prefix}{component.__name__} {{", *lines, "};"])
 
 
-def _member(name: str, variables: list[Variable]) -> str:
+def _member(name: str, variables: list[Variable], numbers: Numbers) -> str:
     """A variable, or an array of them."""
     first, last = variables[0], variables[-1]
     size = f"[{len(variables)}]" if first.element else ""
     unit = "" if first.unit == "1" else f" [{first.unit}]"
     (about,) = comment(" .. ".join(dict.fromkeys((first.description, last.description))) + unit, "")
-    return f"    {TYPES[first.type.__name__]} {c_name(name)}{size}; {about}"
+    return f"    {numbers.text(TYPES[first.type.__name__])} {c_name(name)}{size}; {about}"
 
 
 def _start(component: type[Component]) -> str:

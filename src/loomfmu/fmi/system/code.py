@@ -5,9 +5,10 @@ from collections.abc import Iterable, Iterator
 
 from ...declaring.variables import Variable, variables_of
 from ...errors import LoomfmuError
-from ..native.c_code import TYPES, c_name, literal
+from ..native.c_code import PRODUCT, REAL, SUM, TYPES, WHOLE, Code, c_name, literal
+from ..native.c_numbers import PLAIN, Numbers
 from ..native.tables import Part as Stepped
-from ..native.translate import Translation, translate
+from ..native.translate import Translation, Written, translate
 from .system import SPEED, STEP, STEPS, Drive, Part, System, limited, problems_of
 
 
@@ -19,13 +20,23 @@ def translated(system: System) -> Translation:
         several = [name for name in named if sum(each.__name__ == name for each in components) > 1]
         raise LoomfmuError(f"two components are called {several[0]}; rename one of them")
     parts = [translate(component) for component in components]
-    grid = f"    {TYPES['float']} {STEP};" if system.step else f"    {TYPES['int']} {STEPS};"
-    members = [f"    struct {part.component.__name__} {c_name(part.name)};" for part in system.parts]
-    struct = "\n".join([f"struct {system.name} {{", grid, *members, "};"])
-    return Translation(
-        system.name,
+
+    def written(numbers: Numbers) -> Written:
+        return _written(system, [each.plain if numbers is PLAIN else each.dual for each in parts], numbers)
+
+    return Translation(system.name, written)
+
+
+def _written(system: System, parts: list[Written], numbers: Numbers) -> Written:
+    """The system in C with one type of numbers."""
+    prefix = numbers.prefix
+    grid = f"    {numbers.type} {STEP};" if system.step else f"    {TYPES['int']} {STEPS};"
+    members = [f"    struct {prefix}{part.component.__name__} {c_name(part.name)};" for part in system.parts]
+    struct = "\n".join([f"struct {prefix}{system.name} {{", grid, *members, "};"])
+    included = f'#include "{prefix}grid.h"\n'
+    return Written(
         "\n\n".join([*(each.struct for each in parts), struct]),
-        "\n".join(['#include "grid.h"\n', *(each.functions for each in parts), *_functions(system)]),
+        "\n".join([included, *(each.functions for each in parts), *_functions(system, numbers)]),
     )
 
 
@@ -44,23 +55,26 @@ def inner_step(system: System) -> str:
     return f"{system.name}__inner_step(component)"
 
 
-def _functions(system: System) -> Iterator[str]:
-    this = f"struct {system.name} *self"
-    yield from _function(f"static void {system.name}__init__({this})", _starts(system))
-    yield from _function(f"static double {system.name}__inner_step(const {this})", [_step(system)])
-    yield from _drives(system, this)
+def _functions(system: System, numbers: Numbers) -> Iterator[str]:
+    name, real = numbers.prefix + system.name, numbers.type
+    this = f"struct {name} *self"
+    if numbers is PLAIN:
+        yield from _function(f"static void {name}__init__({this})", _starts(system))
+    yield from _function(f"static {real} {name}__inner_step(const {this})", [_step(system, numbers)])
+    yield from _drives(system, this, numbers)
     for part in system.parts:
-        wire = f"static int64_t {system.name}__wire_{part.name}({this})"
-        yield from _function(wire, _wires(system, part))
+        wire = f"static int64_t {name}__wire_{part.name}({this})"
+        yield from _function(wire, _wires(system, part, numbers))
+        component = numbers.prefix + part.component.__name__
         for entry, arguments in (("initialize", ("time",)), ("step", ("time", "size"))):
-            given = "".join(f", double {each}" for each in arguments)
+            given = "".join(f", {real} {each}" for each in arguments)
             passed = "".join(f", {each}" for each in arguments)
             yield from _function(
-                f"static int64_t {system.name}__{entry}_{part.name}({this}{given})",
+                f"static int64_t {name}__{entry}_{part.name}({this}{given})",
                 [
-                    f"int64_t problem = {system.name}__wire_{part.name}(self);",
+                    f"int64_t problem = {name}__wire_{part.name}(self);",
                     "return problem != 0 ? problem"
-                    f" : {part.component.__name__}__{entry}(&self->{c_name(part.name)}{passed});",
+                    f" : {component}__{entry}(&self->{c_name(part.name)}{passed});",
                 ],
             )
 
@@ -80,11 +94,17 @@ def _starts(system: System) -> Iterator[str]:
                 yield f"{_place(f'{part.name}.{each.member}')} = {literal(value).text};"
 
 
-def _step(system: System) -> str:
+def _step(system: System, numbers: Numbers) -> str:
     if system.step:
         return f"return self->{STEP};"
-    turn = literal(2.0 * math.pi).text
-    return f"return {turn} / (fabs({_place(SPEED)}) * (double)self->{STEPS});"
+    speed = Code(f"{numbers.prefix}fabs({_place(SPEED)})", REAL)
+    steps = numbers.combined("*", PRODUCT, speed, _steps(numbers))
+    return f"return {numbers.combined('/', PRODUCT, numbers.literal(2.0 * math.pi), steps).text};"
+
+
+def _steps(numbers: Numbers) -> Code:
+    """The steps in a revolution as a real number."""
+    return numbers.converted(Code(f"self->{STEPS}", WHOLE))
 
 
 def _place(name: str) -> str:
@@ -99,7 +119,7 @@ def _member(system: System, name: str) -> str:
     return _place(f"{owner}.{found.member}")
 
 
-def _wires(system: System, part: Part) -> Iterator[str]:
+def _wires(system: System, part: Part, numbers: Numbers) -> Iterator[str]:
     """Copies of what a part is wired to; the number of the first input outside its limits."""
     if not any(sink.startswith(f"{part.name}.") for sink in system.wires):
         yield "(void)self;"
@@ -108,49 +128,56 @@ def _wires(system: System, part: Part) -> Iterator[str]:
         if name in system.wires:
             yield f"{_place(f'{part.name}.{each.member}')} = {_member(system, system.wires[name])};"
     for number, each in enumerate(limited(system, part), start=len(part.component.problems) + 1):
-        yield f"if (!({_within(part, each)})) {{"
+        yield f"if (!({_within(part, each, numbers)})) {{"
         yield f"    return {number};"
         yield "}"
     yield "return 0;"
 
 
-def _within(part: Part, variable: Variable) -> str:
-    value = _place(f"{part.name}.{variable.member}")
+def _within(part: Part, variable: Variable, numbers: Numbers) -> str:
+    place = Code(_place(f"{part.name}.{variable.member}"), TYPES[variable.type.__name__])
+    value = numbers.value(place).text
     low, high = (literal(variable.type(limit)).text for limit in variable.limits)
     return f"{value} >= {low} && {value} <= {high}"
 
 
-def _drives(system: System, this: str) -> Iterator[str]:
+def _drives(system: System, this: str, numbers: Numbers) -> Iterator[str]:
     """The tables, and the functions that set the inputs of a start and of a step."""
-    name = system.name
-    for place, drive in enumerate(system.drives.values()):
+    name, real = numbers.prefix + system.name, numbers.type
+    for place, drive in enumerate(system.drives.values() if numbers is PLAIN else ()):
         yield _table("points", place, drive.points)
         yield _table("values", place, drive.values)
-    rate = f"1.0 / self->{STEP}" if system.step else f"(double)self->{STEPS}"
-    lines = [f"double place = grid_place(time + size, {name}__inner_step(self)) / ({rate});"]
+    rate = _steps(numbers)
+    if system.step:
+        rate = numbers.combined("/", PRODUCT, numbers.literal(1.0), Code(f"self->{STEP}", REAL))
+    end = numbers.combined("+", SUM, Code("time", REAL), Code("size", REAL)).text
+    steps = Code(f"{numbers.prefix}grid_place({end}, {name}__inner_step(self))", REAL)
+    lines = [f"{real} place = {numbers.combined('/', PRODUCT, steps, rate).text};"]
     for place, (driven, drive) in enumerate(system.drives.items()):
-        lines.append(f"{_member(system, driven)} = {_driven(drive, place)};")
+        lines.append(f"{_member(system, driven)} = {_driven(drive, place, numbers)};")
     if not system.drives:
         lines = ["(void)self;", "(void)time;", "(void)size;"]
     yield from _function(
-        f"static int64_t {name}__drive({this}, double time, double size)", [*lines, "return 0;"]
+        f"static int64_t {name}__drive({this}, {real} time, {real} size)", [*lines, "return 0;"]
     )
+    step = numbers.value(Code(f"{name}__inner_step(self)", REAL)).text
+    zero = numbers.literal(0.0).text
     yield from _function(
-        f"static int64_t {name}__start_drives({this}, double time)",
+        f"static int64_t {name}__start_drives({this}, {real} time)",
         [
-            f"double step = {name}__inner_step(self);",
-            f"return step > 0.0 && isfinite(step) ? {name}__drive(self, time, 0.0) : 1;",
+            f"double step = {step};",
+            f"return step > 0.0 && isfinite(step) ? {name}__drive(self, time, {zero}) : 1;",
         ],
     )
 
 
-def _driven(drive: Drive, place: int) -> str:
-    along = "grid_held" if drive.held else "grid_between"
-    value = f"{along}(points_{place}, values_{place}, {len(drive.points)}, place)"
-    kind = type(drive.values[0])
+def _driven(drive: Drive, place: int, numbers: Numbers) -> str:
+    along = f"{numbers.prefix}grid_{'held' if drive.held else 'between'}"
+    code = Code(f"{along}(points_{place}, values_{place}, {len(drive.points)}, place)", REAL)
+    kind, value = type(drive.values[0]), numbers.value(code).text
     if kind is bool:
         return f"{value} > 0.0"
-    return f"({TYPES[kind.__name__]}){value}" if kind is int else value
+    return f"({TYPES[kind.__name__]}){value}" if kind is int else code.text
 
 
 def _table(what: str, place: int, numbers: Iterable[float]) -> str:

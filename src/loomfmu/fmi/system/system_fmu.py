@@ -12,7 +12,7 @@ from ..description.terminals import terminal_files
 from ..fmu_files import NAMESPACE
 from ..native import native_fmu as native
 from ..native.libraries import module_of
-from ..native.tables import tables
+from ..native.tables import dual_tables, tables
 from .code import inner_step, stepped, translated
 from .system import STEP, STEPS, System, component_of
 
@@ -54,12 +54,13 @@ def contents(system: System, platforms: tuple[str, ...], fmi: int) -> dict[str, 
     translation = translated(system)
     token = _token(component, translation.header + translation.code)
     model = tables(component, token, stepped(system), inner_step(system))
+    dual_model = dual_tables(component, stepped(system))
     documents = {
         native.ICONS[fmi]: ICON.read_bytes(),
         "documentation/index.html": documentation.page(system.name, _readme(system, component, fmi)),
         **terminal_files(component),
     }
-    code = native.with_shell(translation, model, fmi)
+    code = native.with_shell(translation, model, dual_model, fmi)
     # inputs are held over several steps, so that no derivative of them counts
     capabilities = {"canInterpolateInputs": "false"}
     return native.assembled(component, token, documents, code, platforms, fmi, capabilities)
@@ -69,7 +70,7 @@ def module(system: System) -> bytes:
     """The system as a module of WebAssembly for a page, see `shell/page.c`. Raises as `build_native`."""
     translation = translated(system)
     model = tables(component_of(system), "", stepped(system), inner_step(system))
-    return module_of("page.c", native.with_shell(translation, model, native.PAGE))
+    return module_of("page.c", native.with_shell(translation, model, "", native.PAGE))
 
 
 def _token(component: type[Component], code: str) -> str:

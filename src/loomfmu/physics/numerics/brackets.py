@@ -18,3 +18,20 @@ def nearer_root(low: float, high: float, x: float, beyond: float, slope: float) 
         if low < newton < high:
             nearer = newton
     return nearer
+
+
+def at_root(root: float, value: float, slope: float) -> float:
+    """Return the root of a function that a search has found: the number itself.
+
+    A search decides by comparisons, through which no derivative leads. Numbers that carry one along (dual.h)
+    take here the derivative of the root from its equation: `-(df/dp) / (df/dx)`.
+
+    Args:
+        root: x, as it was found
+        value: f(x, p) of the function at the root
+        slope: df/dx of the function at the root
+
+    >>> at_root(2.0, 1e-16, 3.0)
+    2.0
+    """
+    return root

@@ -10,7 +10,7 @@ All four laws are symmetric, `S(2 pi - x) = 2 pi - S(x)`, so each is written for
 
 from math import asin, cos, pi, sin, sqrt
 
-from ..numerics.brackets import nearer_root
+from ..numerics.brackets import at_root, nearer_root
 
 UNIFORM = 1
 HARMONIC_ENDS = 2
@@ -173,7 +173,8 @@ def dwell_angle(law: int, reduction: float, tolerance: float) -> float:
         if nearer == x or high - low <= 1e-16 * high:
             break
         x = nearer
-    return 2.0 * x
+    angle, first, _second = _half_turn(law, x, reduction)
+    return 2.0 * at_root(x, angle - target, first)
 
 
 def highest_rates(law: int, reduction: float) -> tuple[float, float, float]:

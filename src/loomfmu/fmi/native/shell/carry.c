@@ -88,6 +88,8 @@ static Status fmu_carried_step(Instance *instance, double time, double size)
             *at_step_end = true;
         }
         status = fmu_step(instance, time, size);
+        instance->state.origin.carried = true;
+        memcpy(instance->state.origin.given, instance->state.given, sizeof instance->state.given);
         if (at_step_end != NULL) {
             *at_step_end = false;
         }

@@ -38,6 +38,11 @@ static void fmu_release(const Host *host, void *memory)
 #include "states.c"
 #include "solver.c"
 
+#define TIMED 0 /* the time is not a variable */
+#include "component_dual.c"
+#include "model_dual.h"
+#include "derivatives.c"
+
 /* Where functions may be called: the tables of calling sequences in sections 3.2.3 and 4.2.4 of the standard. */
 #define ALWAYS MODES
 #define READING (INITIALIZING | STEPPING | STEP_FAILED | TERMINATED | BROKEN | EVENTS | CONTINUOUS_TIME)

@@ -69,16 +69,8 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component component, const fmi2Value
                                         size_t unknown_count, const fmi2ValueReference knowns[],
                                         size_t known_count, const fmi2Real seed[], fmi2Real values[])
 {
-    (void)unknowns;
-    (void)unknown_count;
-    (void)knowns;
-    (void)known_count;
-    (void)seed;
-    (void)values;
-    if (fmu_allowed(component, READING, "fmi2GetDirectionalDerivative")) {
-        (void)fmu_complain(component, FAILED, "directional derivatives are not supported");
-    }
-    return fmi2Error;
+    Derivative wanted = {unknowns, unknown_count, knowns, known_count};
+    return (fmi2Status)fmu_get_directional(component, "fmi2GetDirectionalDerivative", wanted, seed, values);
 }
 
 /* ---- what a host may ask about a step */

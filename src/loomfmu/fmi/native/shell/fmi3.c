@@ -32,6 +32,11 @@ static void fmu_release(const Host *host, void *memory)
 #include "states.c"
 #include "solver.c"
 
+#define TIMED 1 /* the time is the variable after all others */
+#include "component_dual.c"
+#include "model_dual.h"
+#include "derivatives.c"
+
 /* Where functions may be called: sections 2.3, 3.2 and 4.2 of the standard. */
 #define ALWAYS MODES
 #define SETTING (INSTANTIATED | INITIALIZING | STEPPING | EVENTS)

@@ -165,38 +165,6 @@ fmi3Status fmi3GetVariableDependencies(fmi3Instance handle, fmi3ValueReference d
     return fmu_not_provided(handle, "dependencies of elements are");
 }
 
-fmi3Status fmi3GetDirectionalDerivative(fmi3Instance handle, const fmi3ValueReference unknowns[],
-                                        size_t unknown_count, const fmi3ValueReference knowns[],
-                                        size_t known_count, const fmi3Float64 seed[], size_t seed_count,
-                                        fmi3Float64 values[], size_t value_count)
-{
-    (void)unknowns;
-    (void)unknown_count;
-    (void)knowns;
-    (void)known_count;
-    (void)seed;
-    (void)seed_count;
-    (void)values;
-    (void)value_count;
-    return fmu_not_provided(handle, "directional derivatives are");
-}
-
-fmi3Status fmi3GetAdjointDerivative(fmi3Instance handle, const fmi3ValueReference unknowns[],
-                                    size_t unknown_count, const fmi3ValueReference knowns[],
-                                    size_t known_count, const fmi3Float64 seed[], size_t seed_count,
-                                    fmi3Float64 values[], size_t value_count)
-{
-    (void)unknowns;
-    (void)unknown_count;
-    (void)knowns;
-    (void)known_count;
-    (void)seed;
-    (void)seed_count;
-    (void)values;
-    (void)value_count;
-    return fmu_not_provided(handle, "adjoint derivatives are");
-}
-
 fmi3Status fmi3EnterConfigurationMode(fmi3Instance handle)
 {
     return fmu_not_provided(handle, "structural parameters are");

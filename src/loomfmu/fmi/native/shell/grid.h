@@ -3,6 +3,7 @@
 #define GRID_H
 
 #include <math.h>
+#include <stdbool.h>
 
 #define GRID_ROUNDING 1e-6 /* of a step: what sums of a host's steps may be off the grid */
 
@@ -11,6 +12,43 @@ static inline double grid_place(double time, double step)
 {
     double steps = time / step, whole = floor(steps + 0.5);
     return fabs(steps - whole) <= GRID_ROUNDING ? whole : steps;
+}
+
+/* Steps from a time to each point of the grid on the way, and from there to an end; one step without a grid. */
+typedef struct {
+    double at, end, inner;
+    double time, size; /* of the step that is to be made */
+} Walk;
+
+static inline Walk grid_walk(double time, double size, double inner)
+{
+    Walk walk = {0.0, 0.0, 0.0, time, size};
+    if (inner > 0.0) {
+        walk.at = grid_place(time, inner);
+        walk.end = grid_place(time + size, inner);
+        walk.inner = inner;
+    }
+    if (!(walk.at < walk.end)) { /* too short to tell both ends apart */
+        walk.at = walk.inner = 0.0;
+        walk.end = 1.0;
+    }
+    return walk;
+}
+
+/* Goes on to the next step; false at the end. */
+static inline bool grid_next(Walk *walk)
+{
+    double at = walk->at, next = floor(at) + 1.0 < walk->end ? floor(at) + 1.0 : walk->end;
+    if (at >= walk->end) {
+        return false;
+    }
+    walk->at = next;
+    if (walk->inner > 0.0) {
+        bool whole = at >= floor(at) && at <= floor(at) && next >= at + 1.0;
+        walk->time = at * walk->inner;
+        walk->size = whole ? walk->inner : (next - at) * walk->inner;
+    }
+    return true;
 }
 
 /* The last of ascending points that is not after a place, or -1. */

@@ -6,6 +6,7 @@ static void fmu_reset(Instance *instance)
     memset(state, 0, sizeof *state);
     memset(instance->warned, 0, sizeof instance->warned);
     component_start(&state->component);
+    state->origin.component = state->component;
     state->mode = INSTANTIATED;
     state->stop_time = HUGE_VAL;
     state->stale = true;
@@ -105,6 +106,16 @@ static Status fmu_report_part(Instance *instance, const Part *part, int64_t prob
     return fmu_report(instance, problem > 0 && problem <= part->problems ? part->first_problem + problem : 0, status);
 }
 
+/* Keeps from where the outputs to come are computed. */
+static void fmu_begin_at(State *state, OriginKind kind, double time, double size)
+{
+    state->origin.kind = kind;
+    state->origin.time = time;
+    state->origin.size = size;
+    state->origin.carried = false;
+    state->origin.component = state->component;
+}
+
 /* Computes the start from the parameters and inputs as they now stand. */
 static Status fmu_refresh(Instance *instance)
 {
@@ -115,6 +126,7 @@ static Status fmu_refresh(Instance *instance)
         return OK;
     }
     state->stale = false;
+    fmu_begin_at(state, START, state->time, 0.0);
     for (i = 0; i < PARTS && status == OK; i++) {
         int64_t problem = parts[i].initialize(&state->component, state->time);
         status = fmu_report_part(instance, &parts[i], problem, FAILED);
@@ -219,23 +231,17 @@ static Status fmu_step_parts(Instance *instance, double time, double size)
 
 #define MOST_INNER_STEPS 1e7 /* in one step of the host: half a minute at some microseconds each */
 
-/* Steps to each point of the grid on the way, and from there to the end of the host's step. */
+/* Steps on the grid of the components to the end of the host's step. */
 static Status fmu_step_on_grid(Instance *instance, double time, double size, double inner)
 {
-    double at = grid_place(time, inner), end = grid_place(time + size, inner);
+    Walk walk = grid_walk(time, size, inner);
     Status status = OK;
-    if (at >= end) { /* too short to tell both ends apart */
-        return fmu_step_parts(instance, time, size);
-    }
-    if (end - at > MOST_INNER_STEPS) {
+    if (walk.end - walk.at > MOST_INNER_STEPS) {
         return fmu_complain_of_step(instance, DISCARD, time, size,
                                     " s takes more than 1e7 steps of the components; step less or make theirs longer");
     }
-    while (at < end && status == OK) {
-        double next = floor(at) + 1.0 < end ? floor(at) + 1.0 : end;
-        bool whole = at >= floor(at) && at <= floor(at) && next >= at + 1.0;
-        status = fmu_step_parts(instance, at * inner, whole ? inner : (next - at) * inner);
-        at = next;
+    while (status == OK && grid_next(&walk)) {
+        status = fmu_step_parts(instance, walk.time, walk.size);
     }
     return status;
 }
@@ -244,13 +250,15 @@ static Status fmu_step_on_grid(Instance *instance, double time, double size, dou
 static Status fmu_step(Instance *instance, double time, double size)
 {
     State *state = &instance->state;
-    Component before = state->component;
     double inner = INNER_STEP(&state->component);
-    Status status = inner > 0.0 ? fmu_step_on_grid(instance, time, size, inner) : fmu_step_parts(instance, time, size);
+    Status status;
+    fmu_begin_at(state, STEP, time, size);
+    status = inner > 0.0 ? fmu_step_on_grid(instance, time, size, inner) : fmu_step_parts(instance, time, size);
     if (status == OK) {
         state->time = time + size;
     } else {
-        state->component = before;
+        state->component = state->origin.component;
+        state->origin.kind = NOWHERE;
     }
     return status;
 }

@@ -34,9 +34,22 @@ typedef enum {
     CONTINUOUS_TIME = 128
 } Mode;
 
+/* What the outputs were computed from, for their derivatives: nothing after a step that failed. */
+typedef enum { NOWHERE, START, STEP } OriginKind;
+
+typedef struct {
+    Component component;
+    int kind; /* an OriginKind */
+    double time;
+    double size;
+    bool carried;                   /* its inputs are those of the end of the step */
+    unsigned char given[VARIABLES]; /* which of their derivatives were given */
+} Origin;
+
 /* All that a host saves and restores. */
 typedef struct {
     Component component;
+    Origin origin;
     int mode; /* a Mode */
     double time;      /* where the component stands */
     double stop_time; /* HUGE_VAL for none */

@@ -28,18 +28,19 @@ static void fmu_hold_discrete(Component *component, const Component *before)
 static Status fmu_evaluate(Instance *instance)
 {
     State *state = &instance->state;
-    Component before = state->component;
     Status status;
     if (!state->stale) {
         return OK;
     }
+    fmu_begin_at(state, STEP, state->time, 0.0);
     status = fmu_step_parts(instance, state->time, 0.0);
     if (status != OK) {
-        state->component = before;
+        state->component = state->origin.component;
+        state->origin.kind = NOWHERE;
         return status;
     }
     if (state->mode == CONTINUOUS_TIME) {
-        fmu_hold_discrete(&state->component, &before);
+        fmu_hold_discrete(&state->component, &state->origin.component);
     }
     state->stale = false;
     return OK;

@@ -1,13 +1,15 @@
 /* The state of an instance as bytes: the same on every machine, and refused if it is not ours.
  *
  * Layout, all numbers little-endian: "LOOMFMU" and the version of the layout, the token, the mode and
- * flags, the times, all variables in the order of their references, what carries the inputs, a checksum.
+ * flags, the times, all variables in the order of their references with what carries the inputs, the same of
+ * the origin of the outputs, a checksum.
  */
 
-#define LAYOUT "LOOMFMU\1"
+#define LAYOUT "LOOMFMU\2"
 #define TOKEN_SIZE (sizeof MODEL_TOKEN - 1)
 #define DERIVATIVES_SIZE ((size_t)VARIABLES * (1 + 8 * HIGHEST_ORDER))
-#define STATE_SIZE (8 + TOKEN_SIZE + 4 + 2 * 8 + (size_t)VARIABLES * 8 + DERIVATIVES_SIZE + 8)
+#define ORIGIN_SIZE (2 + 2 * 8 + (size_t)VARIABLES * (8 + 1))
+#define STATE_SIZE (8 + TOKEN_SIZE + 4 + 2 * 8 + (size_t)VARIABLES * 8 + DERIVATIVES_SIZE + ORIGIN_SIZE + 8)
 
 /* Bytes that are written, or read back in the same order. */
 typedef struct {
@@ -60,6 +62,19 @@ static void fmu_pass_variable(Stream *stream, Component *component, const Row *r
     }
 }
 
+static void fmu_pass_origin(Stream *stream, Origin *origin)
+{
+    int i;
+    origin->kind = (int)fmu_pass_bits(stream, (uint64_t)origin->kind, 1);
+    origin->carried = fmu_pass_bits(stream, origin->carried ? 1 : 0, 1) != 0;
+    origin->time = fmu_pass_real(stream, origin->time);
+    origin->size = fmu_pass_real(stream, origin->size);
+    for (i = 0; i < VARIABLES; i++) {
+        fmu_pass_variable(stream, &origin->component, &rows[i]);
+        origin->given[i] = (unsigned char)fmu_pass_bits(stream, origin->given[i], 1);
+    }
+}
+
 /* Writes a state, or reads one: the same walk, so that both agree. */
 static void fmu_pass_state(Stream *stream, State *state)
 {
@@ -77,6 +92,7 @@ static void fmu_pass_state(Stream *stream, State *state)
             state->derivatives[i][order] = fmu_pass_real(stream, state->derivatives[i][order]);
         }
     }
+    fmu_pass_origin(stream, &state->origin);
 }
 
 /* FNV-1a: enough to find what was damaged on the way. */
@@ -99,23 +115,32 @@ static void fmu_write_state(const State *state, unsigned char *bytes)
     (void)fmu_pass_bits(&stream, fmu_checksum(bytes, STATE_SIZE - 8), 8);
 }
 
+/* Whether a variable is within its limits. */
+static bool fmu_is_within(const Component *component, const Row *row)
+{
+    const char *place = (const char *)component + row->offset;
+    double value = 0.0;
+    if (row->kind == REAL) {
+        value = *(const double *)(const void *)place;
+    } else if (row->kind == INTEGER) {
+        value = (double)*(const int64_t *)(const void *)place;
+    }
+    return value >= row->low && value <= row->high;
+}
+
 /* Whether a state is one that an instance can have been in. */
 static bool fmu_is_possible(const State *state)
 {
+    const Origin *origin = &state->origin;
     int i, order;
     bool known = state->mode > 0 && (state->mode & ~MODES) == 0 && (state->mode & (state->mode - 1)) == 0;
-    if (!known || !isfinite(state->time) || isnan(state->stop_time)) {
+    if (!known || !isfinite(state->time) || isnan(state->stop_time) || origin->kind > STEP
+        || !isfinite(origin->time) || !isfinite(origin->size)) {
         return false;
     }
     for (i = 0; i < VARIABLES; i++) {
-        const char *place = (const char *)&state->component + rows[i].offset;
-        double value = 0.0;
-        if (rows[i].kind == REAL) {
-            value = *(const double *)(const void *)place;
-        } else if (rows[i].kind == INTEGER) {
-            value = (double)*(const int64_t *)(const void *)place;
-        }
-        if (!(value >= rows[i].low && value <= rows[i].high) || state->given[i] >= 1 << HIGHEST_ORDER) {
+        if (!fmu_is_within(&state->component, &rows[i]) || !fmu_is_within(&origin->component, &rows[i])
+            || state->given[i] >= 1 << HIGHEST_ORDER || origin->given[i] >= 1 << HIGHEST_ORDER) {
             return false;
         }
         for (order = 0; order < HIGHEST_ORDER; order++) {
