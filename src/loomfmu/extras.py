@@ -11,7 +11,7 @@ EXTRAS = {  # the packages of each, by the names under which they are imported
     "report": ("jinja2",),
     "study": ("SALib", "filelock", "tomlkit"),
     "sweep": ("dask", "distributed", "filelock", "pyarrow"),
-    "xarray": ("h5netcdf", "xarray"),
+    "xarray": ("h5netcdf", "netCDF4", "xarray"),
 }
 
 

@@ -38,7 +38,7 @@ def test_the_run_says_and_stores_what_it_chose(tmp_path: Path, capsys: pytest.Ca
     printed = capsys.readouterr().out
     assert "chose 165 steps in a revolution: estimated error" in printed
     trace = Trace(path)
-    assert trace.attributes["accuracy"] == "0.0001" and trace.attributes["steps_per_revolution"] == "165"
+    assert trace.attributes["accuracy"] == 0.0001 and trace.attributes["steps_per_revolution"] == 165
     assert trace.verdicts == list(evaluate(DEMO, set=REPEAT | {"accuracy": 1e-4}).claims)
 
 

@@ -154,7 +154,7 @@ def test_run_says_how_long(place: Path, tmp_path: Path, capsys: pytest.CaptureFi
         "plain; step = 2ms: 0.2 s in 100 steps of 0.002 s",
         'changed from the scene "A motor"',
     ]
-    assert Trace(trace).attributes["step"] == "0.002 s"
+    assert Trace(trace).attributes["step"] == 0.002
 
 
 # ---- units on wires: nothing is converted and nothing is guessed

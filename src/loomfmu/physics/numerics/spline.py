@@ -127,6 +127,6 @@ def _part_above(piece: Cubic, level: float, low: float, high: float) -> float:
             start = middle
         else:
             end = middle
-    value, slope, _second, _third = cubic_piece(start, length, left, right, left_bend, right_bend)
+    value, slope, _second, _third = cubic_piece(piece, start)
     start = at_root(start, value - level, slope)
     return start - low if at_low >= level else high - start
