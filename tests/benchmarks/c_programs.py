@@ -147,7 +147,7 @@ def _function(head: str, lines: list[str]) -> Iterator[str]:
 
 def _component(name: str) -> str:
     """A translated component."""
-    translated = translate(COMPONENTS[name])
+    translated = translate(COMPONENTS[name]).plain
     return f"{translated.struct}\n\n{translated.functions}"
 
 

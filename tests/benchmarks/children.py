@@ -99,7 +99,11 @@ class Inside:
     def __init__(self, make: Callable[..., Any], *arguments: Any, pinned: bool = False):
         self._kept = tempfile.TemporaryDirectory(prefix="loomfmu-")
         self.directory = Path(self._kept.name)
-        self._made = self._tried(make, self.directory, *arguments)
+        try:
+            self._made = self._tried(make, self.directory, *arguments)
+        except Failed:
+            self.close()
+            raise
 
     def ask(self, method: str, *arguments: Any) -> Any:
         """What a method of the object returns. Raises `Failed`."""
