@@ -9,7 +9,8 @@ from natives import DISCARD, ERROR, OK, SOLVED, STEPPED, WARNING, EventInfo, Ins
 
 from loomfmu.fmi.native.native_fmu import HEADERS
 
-# section 4.2.4 of FMI 2.0: where each function may be called in co-simulation
+# section 4.2.4 of FMI 2.0: where each function may be called in co-simulation, except that values may be read
+# before it is set up, as in FMI 3.0
 STATES = ("instantiated", "initialization", "step", "failed", "terminated", "error")
 STEPPED_2 = {
     "SetDebugLogging": STATES,
@@ -18,10 +19,10 @@ STEPPED_2 = {
     "ExitInitializationMode": ("initialization",),
     "Terminate": ("step", "failed"),
     "Reset": STATES,
-    "GetReal": STATES[1:],
-    "GetInteger": STATES[1:],
-    "GetBoolean": STATES[1:],
-    "GetString": STATES[1:],
+    "GetReal": STATES,
+    "GetInteger": STATES,
+    "GetBoolean": STATES,
+    "GetString": STATES,
     "SetReal": STATES[:3],
     "SetInteger": STATES[:3],
     "SetBoolean": STATES[:3],
@@ -50,8 +51,8 @@ SOLVING = ("instantiated", "initialization", "event", "continuous", "terminated"
 SOLVED_2 = {
     "ExitInitializationMode": ("initialization",),
     "Terminate": ("event", "continuous"),
-    "GetReal": SOLVING[1:],
-    "GetInteger": SOLVING[1:],
+    "GetReal": SOLVING,
+    "GetInteger": SOLVING,
     "SetReal": SOLVING[:4],
     "SetInteger": SOLVING[:3],
     "SetBoolean": SOLVING[:3],

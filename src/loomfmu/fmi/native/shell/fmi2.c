@@ -43,9 +43,10 @@ static void fmu_release(const Host *host, void *memory)
 #include "model_dual.h"
 #include "derivatives.c"
 
-/* Where functions may be called: the tables of calling sequences in sections 3.2.3 and 4.2.4 of the standard. */
+/* Where functions may be called: the tables of calling sequences in sections 3.2.3 and 4.2.4 of the standard. Values may
+ * be read earlier, as in FMI 3.0: PyFMI does so before it sets up the experiment. */
 #define ALWAYS MODES
-#define READING (INITIALIZING | STEPPING | STEP_FAILED | TERMINATED | BROKEN | EVENTS | CONTINUOUS_TIME)
+#define READING MODES
 #define SETTING (INSTANTIATED | INITIALIZING | STEPPING | EVENTS)
 #define CONTINUOUS_SETTING (SETTING | CONTINUOUS_TIME)
 #define STEPPED (STEPPING | STEP_FAILED | TERMINATED)
