@@ -747,8 +747,8 @@ def small_disk(tmp_path: Path):
 
 def test_a_trace_that_does_not_fit_is_refused_before_the_run(tmp_path: Path, small_disk: Path) -> None:
     done = subprocess.run(RUN, cwd=tmp_path, capture_output=True, text=True, timeout=60)
-    # 528 blocks of 8192 samples of time, angle, margin and the shaft's three: 48 bytes each, and book-keeping
-    said = r"\(it takes up to 255\.3 MB, and the disk has 3\.\d MB free\)\n"
+    # 4,321,280 samples of time, angle, margin and the shaft's three, 48 bytes each, and book-keeping
+    said = r"\(it takes up to 207\.8 MB, and the disk has 3\.\d MB free\)\n"
     assert re.fullmatch(rf"loomfmu: out/long\.h5: cannot be written {said}", done.stderr)
     assert (done.returncode, done.stdout) == (2, "")
     assert [path.name for path in small_disk.iterdir()] == ["long.h5"]
@@ -774,7 +774,7 @@ def test_a_large_trace_is_told_before_the_run(
     monkeypatch.setattr("loomfmu.cosim.recorded.LARGE_TRACE", 50_000)
     result = loomfmu.run(tmp_path / "one.toml", output=tmp_path / "one.h5", progress=True)
     assert capsys.readouterr().err == (  # 1441 samples of 48 bytes
-        f"{tmp_path}/one.h5: the trace takes up to 0.1 MB; record = [...] keeps less\n"
+        f"{tmp_path}/one.h5: the trace takes up to 0.3 MB; record = [...] keeps less\n"
     )
     assert result.path.stat().st_size < 69168 + 40_000  # less than that, with what describes it
 

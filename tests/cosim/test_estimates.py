@@ -570,6 +570,44 @@ def test_an_angle_and_its_velocity_come_from_one_shaft(together: bool, grid: str
     assert (wrong in found.note) != together
 
 
+HALF = """
+from dataclasses import dataclass
+from typing import ClassVar
+from loomfmu.mechanism import NOTHING, TOO_FAR, Problem, ShaftDriven, output, too_far
+
+@dataclass(slots=True)
+class Half(ShaftDriven):
+    \"\"\"An angle, and half of its velocity.\"\"\"
+    problems: ClassVar[tuple[Problem, ...]] = (TOO_FAR,)
+    keeps: ClassVar[str] = NOTHING
+    longest_turn: ClassVar[float] = 0.5
+    angle: float = output("rad", "angle")
+    velocity: float = output("rad/s", "half of its rate")
+    acceleration: float = output("rad/s2", "none")
+
+    def initialize(self, time: float) -> int:
+        \"\"\"Begin.\"\"\"
+        return self.step(time, 0.0)
+
+    def step(self, time: float, step_size: float) -> int:
+        \"\"\"Go on.\"\"\"
+        angle, speed, _acceleration = self.shaft(time, step_size)
+        self.angle = angle
+        self.velocity = 0.5 * speed
+        return 1 if too_far(angle) else 0
+"""
+
+
+def test_an_output_that_is_not_said_to_be_a_rate_is_none(tmp_path: Path) -> None:
+    """Half of the velocity, of one's own mechanism that says of neither what it is: 42.1 m/s were 21.1."""
+    (tmp_path / "half.py").write_text(HALF)
+    text = table("half", component="half.py") + table("weft", machine="WL680-3600")
+    wired = "[wires]\n" + wires(**{f"weft__shaft_{each}": f"half.{each}" for each in MOTION})
+    bound = claim("below", signal="weft.velocity", bound=25.0)
+    (found,) = verdicts(text, wired, bound, directory=tmp_path, revolutions=2, shaft__speed="300 rev/min")
+    assert found.word == "undecided" and "is not the rate of half.angle" in found.note
+
+
 KINKED = Path(__file__).with_name("kinked.py")
 
 
@@ -590,6 +628,34 @@ def test_a_held_extreme_at_a_corner_is_of_order_one(steps: int) -> None:
     )
     assert lowest < -0.0193 < found.worst
     assert found.word == "undecided" and found.error > found.worst - lowest
+
+
+@pytest.mark.parametrize(
+    ("law", "steps", "bound", "truth"),  # the truth from 99,991 and 360,000 steps
+    [
+        ("plateau", 2360, 80.2625, 80.263012),
+        ("spline-cam", 558, 28.79803, 28.798149),
+        ("slotted-levers", 551, 235.455, 235.459297),
+    ],
+)
+def test_the_worst_sample_is_off_by_what_the_signal_goes_on_in_a_step(
+    law: str, steps: int, bound: float, truth: float
+) -> None:
+    """An acceleration has corners and jumps: the nearest sample is off by the first order, as chance has it."""
+    text = claim("below", signal="heald_1.acceleration", bound=bound, at_samples=True)
+    usual = {"revolutions": 2, "shaft__speed": "500 rev/min", "loom__weave": "10/01", "dobby__law": law}
+    (found,) = verdicts(LOOM, text, steps_per_revolution=steps, **usual)
+    assert found.worst < bound < truth
+    assert found.word == "undecided" and found.error > truth - found.worst
+
+
+def test_a_ratio_at_the_samples_is_as_sure_as_its_forces() -> None:
+    text = table("roller", component="DetachingRoller") + claim(
+        "nip_holds", at_least=2.006994, at_samples=True
+    )
+    (found,) = verdicts(text, revolutions=1, steps_per_revolution=1890, shaft__speed="100 rev/min")
+    truth = 2.0069194  # from 737,280 and 999,983 steps
+    assert found.word == "undecided" and found.error > found.worst - truth > 0.0
 
 
 def test_a_yes_or_no_output_is_no_surer_than_the_number_that_decides_it(tmp_path: Path) -> None:

@@ -130,13 +130,13 @@ def test_a_trace_that_does_not_have_its_wires_is_judged_as_one_with_all():
     trace = energy().trace
     whole = judge(trace, kind="energy_balance")
     assert trace.wires["shaft.work_1"] == "weft.shaft_work"
-    trace._wires = {}
+    trace.wires = {}
     assert judge(trace, kind="energy_balance") == whole
 
 
 def test_a_work_that_the_shaft_counts_but_that_is_not_wired_fails():
     trace = energy().trace
-    trace._wires = {sink: source for sink, source in trace.wires.items() if sink != "shaft.work_1"}
+    trace.wires = {sink: source for sink, source in trace.wires.items() if sink != "shaft.work_1"}
     verdict = judge(trace, kind="energy_balance")
     assert not verdict
     assert verdict.note == "shaft.use_work_1 = true, but shaft.work_1 is not wired"

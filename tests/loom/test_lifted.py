@@ -76,7 +76,7 @@ def test_a_run_that_does_not_say_which_damper_is_in_a_frame_is_not_judged() -> N
     """Traces of older versions have no wires."""
     trace = evaluate(named("left", "swing", ROOM), errors="none").trace
     dwell = {"kind": "dwell", "heald": "left", "at_least": "1 deg"}
-    trace._wires = {}
+    trace.wires = {}
     with pytest.raises(LoomfmuError, match=r"^the run does not say which damper is in left; set lifted_by$"):
         judge(trace, **dwell)
     assert judge(trace, **dwell, lifted_by="swing").signal == "swing.carrier_lift"

@@ -15,7 +15,7 @@ from h5py import h5a, h5d, h5p, h5s, h5t
 from numpy.typing import NDArray
 from zlib_ng import zlib_ng
 
-ROWS = 8192  # of a block and of a chunk: half as many pack worse, twice as many take a slow run too long
+ROWS = 4096  # of a block and of a chunk: more pack better, but in a slow run a block must not take a second
 LEVEL = 1  # of compression: higher ones take three times as long for 5 % less
 UNFILTERED = 0b11  # mask of a chunk that neither shuffle nor gzip has changed
 TEXT = h5py.string_dtype()

@@ -14,7 +14,8 @@ PER_DATASET = 4096  # bytes of book-keeping for a dataset, in its header or for 
 def largest(rows: int, signals: int) -> int:
     """Bytes that a trace takes at most while it is written, with time, shaft angle and book-keeping."""
     blocks = -(-rows // chunk_of(rows))
-    return SPARE + PER_DATASET * (signals + 2) + blocks * block_size(rows, signals)
+    header = SPARE + PER_DATASET * (signals + 2)
+    return header + 8 * blocks * chunk_of(rows) * (signals + 2) + block_size(rows, signals)
 
 
 def block_size(rows: int, signals: int) -> int:

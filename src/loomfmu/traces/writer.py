@@ -98,7 +98,7 @@ class TraceWriter:
         """
         file = self._file
         first = {"Conventions": "CF-1.11", "software": SOFTWARE}
-        if "command" in attributes:  # no date: equal runs write equal bytes
+        if "command" in attributes:  # no date, by which equal runs would differ
             first["history"] = f"{SOFTWARE}: {attributes['command']}"
         shown = {"NX_class": "NXroot", "default": self.channels[0].instance} if self.channels else {}
         annotate(file, {**first, **shown, **attributes, "status": "running"})

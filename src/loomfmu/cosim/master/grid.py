@@ -169,9 +169,13 @@ def _fed_apart(
 
 
 def _is_rate(scene: Scene, rate: tuple[str, str], source: tuple[str, str]) -> bool:
-    """Return whether an output is the rate of another one, as far as their FMU says."""
-    known = scene.instances[source[0]].fmu.ports[source[1]].rate if source[0] in scene.instances else None
-    return rate[0] == source[0] and known in (None, rate[1])
+    """Return whether an output is the rate of another one; FMUs of others need not say so."""
+    if rate[0] != source[0] or source[0] not in scene.instances:
+        return rate[0] == source[0]
+    fmu = scene.instances[source[0]].fmu
+    return rate[1] == fmu.ports[source[1]].rate or (
+        fmu.component is None and fmu.ports[source[1]].rate is None
+    )
 
 
 def _needs_equal_steps(scene: Scene) -> str:

@@ -29,6 +29,23 @@ static double known_doubt(struct extreme found)
     return isfinite(doubt) ? doubt : 0.0;
 }
 
+static double change_at(struct motion *motion, ptrdiff_t place)
+{
+    const bool inside = 0 <= place && place + 1 < motion->samples;
+    return inside ? fabs(sample(motion, 1, place + 1) - sample(motion, 1, place)) : 0.0;
+}
+
+/* By how much a motion that is judged at its samples may go beyond the worst of them: at a corner, or beside a jump, as far
+ * as it goes on in a step. The steps next to the sample may hold the corner or the jump, those behind them show the slopes. */
+static double sampled_doubt(struct motion *motion, double time)
+{
+    if (!isfinite(time) || !motion->finite)
+        return 0.0;
+    ptrdiff_t at = samples_before(motion->run, time, false);
+    const double beside = smaller(change_at(motion, at - 1), change_at(motion, at));
+    return larger(beside, larger(change_at(motion, at - 2), change_at(motion, at + 1)));
+}
+
 /* A search for where `sign` times a motion is lowest: values with their times, and the best, sure and possible ones. */
 struct search {
     struct motion *motion;
