@@ -641,7 +641,7 @@ def test_a_held_extreme_at_a_corner_is_of_order_one(steps: int) -> None:
 def test_the_worst_sample_is_off_by_what_the_signal_goes_on_in_a_step(
     law: str, steps: int, bound: float, truth: float
 ) -> None:
-    """Accelerations have corners and jumps: the nearest sample is off by the first order, as chance has it."""
+    """Accelerations have corners and jumps: the nearest sample is off by the first order, by chance."""
     text = claim("below", signal="heald_1.acceleration", bound=bound, at_samples=True)
     usual = {"revolutions": 2, "shaft__speed": "500 rev/min", "loom__weave": "10/01", "dobby__law": law}
     (found,) = verdicts(LOOM, text, steps_per_revolution=steps, **usual)
