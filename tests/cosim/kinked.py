@@ -24,7 +24,7 @@ class Kinked(ShaftDriven):
     keeps: ClassVar[str] = EXTREMES
     longest_turn: ClassVar[float] = pi / 16.0
 
-    height: float = parameter("m", 1.0, "height of the corner", minimum=0.0, maximum=10.0)
+    height: float = parameter("m", 1.0, "height of the corner", minimum=-10.0, maximum=10.0)
     place: float = parameter("rad", 1.0, "angle of the corner")
     wave: float = parameter("m", 0.1, "height of the wave", minimum=-10.0, maximum=10.0)
     value: float = output("m", "value")

@@ -605,7 +605,8 @@ def test_an_output_that_is_not_said_to_be_a_rate_is_none(tmp_path: Path) -> None
     wired = "[wires]\n" + wires(**{f"weft__shaft_{each}": f"half.{each}" for each in MOTION})
     bound = claim("below", signal="weft.velocity", bound=25.0)
     (found,) = verdicts(text, wired, bound, directory=tmp_path, revolutions=2, shaft__speed="300 rev/min")
-    assert found.word == "undecided" and "is not the rate of half.angle" in found.note
+    assert found.word == "undecided"
+    assert 'is not the rate of half.angle; declare half.angle with rate="velocity" if it is' in found.note
 
 
 KINKED = Path(__file__).with_name("kinked.py")
@@ -647,6 +648,25 @@ def test_the_worst_sample_is_off_by_what_the_signal_goes_on_in_a_step(
     (found,) = verdicts(LOOM, text, steps_per_revolution=steps, **usual)
     assert found.worst < bound < truth
     assert found.word == "undecided" and found.error > truth - found.worst
+
+
+def test_the_steps_that_a_window_divides_count_at_the_samples() -> None:
+    """The ratio jumps in the step that the end of the window divides: to 6.562, from 46,080 steps."""
+    window = ["142.1954431774134 deg", "304.36318104996025 deg"]
+    ratio = {"signal": "damper_1.acceleration_ratio", "bound": 6.33, "window": window, "at_samples": True}
+    ripple = {"shaft__ripple_amplitude": 0.08440608373900103, "shaft__ripple_order": 7}
+    damped = LOOM + 'weave = "10"\ndampers = true\nwarps = true\n'
+    turning = {"revolutions": 2, "steps_per_revolution": 99, "shaft__speed": "482.9228964974042 rev/min"}
+    (found,) = verdicts(damped, claim("below", **ratio), **turning, **ripple, dobby__law="plateau")
+    assert found.word == "undecided" and found.error > 6.562 - found.worst > 0.0
+
+
+def test_no_claim_holds_below_a_corner_that_no_sample_meets() -> None:
+    text = table("m", component=str(KINKED), height=-1.0, place=0.5 * math.pi, wave=-0.004)
+    at = claim("below", signal="m.value", bound=0.0035, at_samples=True)
+    for steps in (45, 63, 91, 187):
+        (found,) = verdicts(text, at, revolutions=1, steps_per_revolution=steps, shaft__speed=40.0)
+        assert found.word != "holds"  # -|sin| has its corners at 0 and pi, and is 0.004 above there
 
 
 def test_a_ratio_at_the_samples_is_as_sure_as_its_forces() -> None:

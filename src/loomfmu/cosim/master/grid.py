@@ -160,7 +160,11 @@ def _fed_apart(
             elif here in wired and not _is_rate(scene, wired[there], wired[here]):
                 of, source = ".".join(wired[here]), ".".join(wired[there])
                 wrong = f"{rate} is wired to {source}, which is not the rate of {of}"
-                found.setdefault(name, f"{wrong}; wire both to one FMU")
+                one = wired[here][0] == wired[there][0]
+                cure = (
+                    f'declare {of} with rate="{wired[there][1]}" if it is' if one else "wire both to one FMU"
+                )
+                found.setdefault(name, f"{wrong}; {cure}")
             elif variable in instance.fmu.shaft_inputs[:1] and not {here, there} & fed:
                 found.setdefault(name, f"{name} follows a shaft, but nothing feeds {value}")
             elif there in wired and here in driven:

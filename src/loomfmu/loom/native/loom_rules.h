@@ -178,9 +178,11 @@ static void judge_nip(struct run *run, const struct call *call, struct answer *a
     answer->bound = answer->form == 1 ? largest : least;
     answer->worst = ratio;
     answer->time = most.time;
-    const double drafts = is_known(drafting) ? known_doubt(most) : sampled_doubt(drafting, most.time);
-    const double holds = is_known(holding) ? known_doubt(held) : sampled_doubt(holding, held.time);
-    answer->between = (holds + ratio * drafts) / most.value;
+    if (!is_known(drafting))
+        most.possible = sampled_possible(drafting, -1.0, NULL);
+    if (!is_known(holding))
+        held.possible = sampled_possible(holding, -1.0, &drafted);
+    answer->between = (known_doubt(held) + ratio * known_doubt(most)) / most.value;
     answer->holds = least - SAME <= ratio && ratio <= largest + SAME;
     note_coarse(run, answer, most);
     note_coarse(run, answer, held);

@@ -35,15 +35,24 @@ static double change_at(struct motion *motion, ptrdiff_t place)
     return inside ? fabs(sample(motion, 1, place + 1) - sample(motion, 1, place)) : 0.0;
 }
 
-/* By how much a motion that is judged at its samples may go beyond the worst of them: at a corner, or beside a jump, as far
- * as it goes on in a step. The steps next to the sample may hold the corner or the jump, those behind them show the slopes. */
-static double sampled_doubt(struct motion *motion, double time)
+/* The lowest value of `sign` times a motion as its samples tell, which go on for a step: a corner or a jump lies anywhere
+ * between two of them. The step with the corner or the jump tells nothing of a slope, so the smaller change counts of the
+ * steps at a sample, or of those behind them. The samples on both sides of an edge count where it divides a step. */
+static double sampled_possible(struct motion *motion, double sign, const struct stretches *within)
 {
-    if (!isfinite(time) || !motion->finite)
-        return 0.0;
-    ptrdiff_t at = samples_before(motion->run, time, false);
-    const double beside = smaller(change_at(motion, at - 1), change_at(motion, at));
-    return larger(beside, larger(change_at(motion, at - 2), change_at(motion, at + 1)));
+    const struct run *run = motion->run;
+    struct stretch all = {time_at(run, 0), end_of(run), true};
+    double found = INFINITY;
+    for (ptrdiff_t number = 0; number < (within == NULL ? 1 : within->count); number++) {
+        const struct stretch *each = within == NULL ? &all : &within->list[number];
+        const ptrdiff_t first = samples_before(run, each->start, true) - 1, end = samples_before(run, each->end, false);
+        for (ptrdiff_t at = first < 0 ? 0 : first; at <= end && at < motion->samples; at++) {
+            const double beside = smaller(change_at(motion, at - 1), change_at(motion, at));
+            const double behind = smaller(change_at(motion, at - 2), change_at(motion, at + 1));
+            found = smaller(found, sign * sample(motion, 1, at) - larger(beside, behind));
+        }
+    }
+    return sign * found;
 }
 
 /* A search for where `sign` times a motion is lowest: values with their times, and the best, sure and possible ones. */

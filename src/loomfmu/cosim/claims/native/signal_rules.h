@@ -77,7 +77,10 @@ static struct extreme worst_of(struct run *run, const struct call *call, const s
         return NO_EXTREME;
     if (call->number[1] != 0.0) {
         struct extreme found = lowest_sample(motion, sense, within);
-        found.possible = found.value - sense * sampled_doubt(motion, found.time);
+        if (motion->finite && isfinite(found.time))
+            found.possible = sampled_possible(motion, sense, within);
+        else
+            found.possible = found.sure;
         if (!isfinite(found.time))
             note(run, answer, "no sample lies in that window; take more steps", PLAIN);
         return found;
