@@ -29,15 +29,17 @@ static double known_doubt(struct extreme found)
     return isfinite(doubt) ? doubt : 0.0;
 }
 
+static const double STEEPER = 2.0; /* how much more than in a step beside it a signal may change in one */
+
 static double change_at(struct motion *motion, ptrdiff_t place)
 {
     const bool inside = 0 <= place && place + 1 < motion->samples;
-    return inside ? fabs(sample(motion, 1, place + 1) - sample(motion, 1, place)) : 0.0;
+    return inside ? fabs(sample(motion, 1, place + 1) - sample(motion, 1, place)) : INFINITY;
 }
 
 /* The lowest value of `sign` times a motion as its samples tell, which go on for a step: a corner or a jump lies anywhere
  * between two of them. The step with the corner or the jump tells nothing of a slope, so the smaller change counts of the
- * steps at a sample, or of those behind them. The samples on both sides of an edge count where it divides a step. */
+ * steps at a sample, or of those behind them, twice over. The samples on both sides of an edge count where it divides a step. */
 static double sampled_possible(struct motion *motion, double sign, const struct stretches *within)
 {
     const struct run *run = motion->run;
@@ -49,7 +51,8 @@ static double sampled_possible(struct motion *motion, double sign, const struct 
         for (ptrdiff_t at = first < 0 ? 0 : first; at <= end && at < motion->samples; at++) {
             const double beside = smaller(change_at(motion, at - 1), change_at(motion, at));
             const double behind = smaller(change_at(motion, at - 2), change_at(motion, at + 1));
-            found = smaller(found, sign * sample(motion, 1, at) - larger(beside, behind));
+            const double slope = larger(isfinite(beside) ? beside : 0.0, isfinite(behind) ? behind : 0.0);
+            found = smaller(found, sign * sample(motion, 1, at) - STEEPER * slope);
         }
     }
     return sign * found;
