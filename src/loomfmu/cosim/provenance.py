@@ -49,19 +49,16 @@ def attributes(plan: Plan, flavour: str, folder: Path) -> dict[str, str | float]
         **({"notes": "\n".join(scene.notes)} if scene.notes else {}),
         **{f"fmu_{name}_version": fmu.version for name, fmu in sorted(fmus.items())},
         **{f"fmu_{name}_sha256": fmu.sha256 for name, fmu in sorted(fmus.items())},
-        **_libraries(),
+        **(_hash(steppers.SOURCE) if _flavour(scene, flavour) == "native" else {}),
+        **(_hash(standard().RULES) if scene.claims else {}),
     }
 
 
 @cache
-def _libraries() -> dict[str, str]:
-    """The SHA-256 of the libraries that step and judge, where there are any."""
-    found = {source.stem: library_of(source) for source in (steppers.SOURCE, standard().RULES)}
-    return {
-        f"{name}_sha256": hashlib.sha256(library.read_bytes()).hexdigest()
-        for name, library in found.items()
-        if library is not None
-    }
+def _hash(source: Path) -> dict[str, str]:
+    """The SHA-256 of the library of a C file that a run uses, if there is one."""
+    library = library_of(source)
+    return {f"{source.stem}_sha256": hashlib.sha256(library.read_bytes()).hexdigest()} if library else {}
 
 
 def scene_file(scene: Scene, folder: Path) -> str:
