@@ -18,7 +18,6 @@ from loomfmu.cache.directory import cache_directory, compiler_environment
 from loomfmu.cosim.importing import fmus
 from loomfmu.fmi import live_fmu
 
-SIMS = Path(__file__).parents[2] / "sims"
 unix = pytest.mark.skipif(sys.platform == "win32", reason="owners and modes of files are those of Unix")
 
 
@@ -137,10 +136,11 @@ def test_a_run_without_a_home_that_can_be_written_takes_a_temporary_one(
     if flavour == ["--native"]:
         pytest.importorskip("ziglang", reason="ziglang is not installed: no native FMU can be built")
     (tmp_path / "temporary").mkdir()
+    (tmp_path / "x.toml").write_text("duration = 1\nstep = 0.1\n[belt]\n")
     # that the compiler has a cache of its own, too, is for the slow one: it takes ten seconds
     zig = {"ZIG_GLOBAL_CACHE_DIR": str(KEPT / "zig")} if flavour == ["--live"] else {}
     done = subprocess.run(
-        [sys.executable, "-m", "loomfmu.cli", "run", SIMS / "belt_alone.toml", *flavour, "--output", "x.h5"],
+        [sys.executable, "-m", "loomfmu.cli", "run", "x.toml", *flavour, "--output", "x.h5"],
         cwd=tmp_path,
         env=os.environ | {"TMPDIR": str(tmp_path / "temporary")} | zig,
         capture_output=True,
@@ -154,7 +154,7 @@ def test_a_run_without_a_home_that_can_be_written_takes_a_temporary_one(
         f" using a temporary one, {WHAT_TO_DO}\n"
     )
     assert list((tmp_path / "temporary").iterdir()) == []  # it has cleared up
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["home", "temporary", "x.h5"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["home", "temporary", "x.h5", "x.toml"]
 
 
 def test_the_processes_of_a_run_share_the_temporary_one(no_home: Path, tmp_path: Path) -> None:

@@ -62,6 +62,23 @@ def demo(fmu_cache: None, tmp_path_factory: pytest.TempPathFactory) -> Whole:
     return Whole(exported(loaded(DEMO), directory), directory / "unpacked")
 
 
+@pytest.fixture(scope="module")
+def demo_run(fmu_cache: None, tmp_path_factory: pytest.TempPathFactory) -> Signals:
+    """All that the run of the demonstration records."""
+    return traced(loaded(DEMO), tmp_path_factory.mktemp("run"))
+
+
+@pytest.fixture(scope="module", params=[2, 3])
+def belt(request: pytest.FixtureRequest, fmu_cache: None, tmp_path_factory: pytest.TempPathFactory) -> Whole:
+    """A belt alone, whose inputs are those of the FMU."""
+    directory = tmp_path_factory.mktemp("belt")
+    scene = scenes.parse("duration = 1\nstep = 0.01\n[belt]\n", "open")
+    return Whole(exported(scene, directory, request.param), directory / "unpacked")
+
+
+of_fmi_2 = pytest.mark.parametrize("belt", [2], indirect=True)
+
+
 # ---- the bits of a run
 
 
@@ -89,12 +106,12 @@ def test_it_does_so_in_fmi_3(tmp_path: Path) -> None:
     same(one.instance().along(scene.steps, scene.step_size), traced(scene, tmp_path))
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("every", [7, 1440])
-def test_a_communication_step_may_hold_many_steps(tmp_path: Path, demo: Whole, every: int) -> None:
+def test_a_communication_step_may_hold_many_steps(demo: Whole, demo_run: Signals, every: int) -> None:
     scene = loaded(DEMO)
     steps = scene.steps - scene.steps % every
-    same(demo.instance().along(steps, scene.step_size, every), traced(scene, tmp_path), every)
+    same(demo.instance().along(steps, scene.step_size, every), demo_run, every)
 
 
 def test_a_step_that_ends_off_the_grid_is_made_to_its_end(demo: Whole) -> None:
@@ -115,17 +132,17 @@ def test_a_step_that_ends_off_the_grid_is_made_to_its_end(demo: Whole) -> None:
     assert other.all() == pytest.approx(usual.all(), rel=1e-10, abs=1e-12)
 
 
-def test_times_may_be_off_the_grid_by_what_a_host_rounds(tmp_path: Path, demo: Whole) -> None:
+def test_times_may_be_off_the_grid_by_what_a_host_rounds(demo: Whole, demo_run: Signals) -> None:
     scene = loaded(DEMO)
     instance, time = demo.instance(), 0.0
     for _ in range(1000):
         instance.step(time, scene.step_size)
         time += scene.step_size  # off by 1e-13 s at the end
     found = {signal: np.array([value]) for signal, value in instance.all().items()}
-    same(found, {signal: values[1000:] for signal, values in traced(scene, tmp_path).items()})
+    same(found, {signal: values[1000:] for signal, values in demo_run.items()})
 
 
-def test_fmpy_simulates_it(tmp_path: Path, demo: Whole) -> None:
+def test_fmpy_simulates_it(demo: Whole, demo_run: Signals) -> None:
     scene = loaded(DEMO)
     found = fmpy.simulate_fmu(
         str(demo.path),
@@ -133,9 +150,8 @@ def test_fmpy_simulates_it(tmp_path: Path, demo: Whole) -> None:
         output_interval=scene.step_size,
         output=["belt.margin", "heald_1.lift"],
     )
-    expected = traced(scene, tmp_path)
     for signal in ("belt.margin", "heald_1.lift"):
-        np.testing.assert_array_equal(found[signal], expected[signal][: len(found)])
+        np.testing.assert_array_equal(found[signal], demo_run[signal][: len(found)])
 
 
 # ---- parameters, states, instances
@@ -360,36 +376,31 @@ def test_a_shaft_that_stands_still_has_no_step(demo: Whole) -> None:
         demo.instance(shaft__speed=0.0)
 
 
-def test_a_step_that_would_take_hours_is_refused(tmp_path: Path) -> None:
-    path = tmp_path / "loom.toml"
-    path.write_text("duration = 1\nstep = 0.01\n[belt]\n")
-    instance = Whole(exported(loaded(path), tmp_path), tmp_path / "unpacked").instance(step=1e-12)
+@of_fmi_2
+def test_a_step_that_would_take_hours_is_refused(belt: Whole) -> None:
+    instance = belt.instance(step=1e-12)
     with pytest.raises(Exception, match="fmi2DoStep failed"):
         instance.along(1, 1e-3)
     assert any("takes more than 1e7 steps of the components" in text for text in instance.log)
 
 
-def test_derivatives_of_inputs_are_refused(tmp_path: Path) -> None:
-    text = "duration = 1\nstep = 0.01\n[belt]\n"
-    one = Whole(exported(scenes.parse(text, "open"), tmp_path), tmp_path / "unpacked")
-    assert one.variables["belt.travel"].causality == "input"
-    assert one.description.coSimulation.canInterpolateInputs is False
-    instance = one.instance()
+@of_fmi_2
+def test_derivatives_of_inputs_are_refused(belt: Whole) -> None:
+    assert belt.variables["belt.travel"].causality == "input"
+    assert belt.description.coSimulation.canInterpolateInputs is False
+    instance = belt.instance()
     with pytest.raises(Exception, match="fmi2SetRealInputDerivatives failed"):
-        instance.slave.setRealInputDerivatives([one.variables["belt.travel"].valueReference], [1], [0.0])
+        instance.slave.setRealInputDerivatives([belt.variables["belt.travel"].valueReference], [1], [0.0])
     assert instance.log[-1].endswith("belt.travel: input derivatives are not supported")
 
 
-@pytest.mark.parametrize("fmi", [2, 3])
-def test_outputs_of_a_step_have_derivatives(tmp_path: Path, fmi: int) -> None:
+def test_outputs_of_a_step_have_derivatives(belt: Whole) -> None:
     """Through all steps of the components in a communication step, the last of which is shorter."""
-    scene = scenes.parse("duration = 1\nstep = 0.01\n[belt]\n", "open")
-    one = Whole(exported(scene, tmp_path, fmi=fmi), tmp_path / "unpacked")
     names = ["belt.margin", "belt.free_length"]
-    travel, *outputs = (one.variables[name].valueReference for name in ("belt.travel", *names))
+    travel, *outputs = (belt.variables[name].valueReference for name in ("belt.travel", *names))
 
     def stepped(value: float) -> Any:
-        instance = one.instance(belt__travel=0.9, belt__acceleration=50.0)
+        instance = belt.instance(belt__travel=0.9, belt__acceleration=50.0)
         instance.set({"belt.travel": value})
         instance.step(0.0, 0.025)
         return instance

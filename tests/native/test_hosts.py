@@ -90,7 +90,7 @@ def fuzzed(host: Path, seed: int) -> list[int]:
     return [int(word) for word in run.stdout.split()]
 
 
-@pytest.mark.few(4)
+@pytest.mark.few(1, each="fmi")
 @pytest.mark.parametrize("fmi", [2, 3])
 @every_fmu
 def test_random_calls_and_random_bytes_do_no_harm(fuzzer, name, fmi):

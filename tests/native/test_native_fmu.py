@@ -96,7 +96,7 @@ def test_it_states_its_version_and_platform(native):
     assert (library.fmi2GetVersion(), library.fmi2GetTypesPlatform()) == (b"2.0", b"default")
 
 
-@pytest.mark.few(3, each="fmi")
+@pytest.mark.few(1, each="fmi")
 @either_fmi
 @every_fmu
 def test_its_sources_compile_without_a_warning(package, gcc, tmp_path, name, fmi):

@@ -275,7 +275,7 @@ def _gradient(fmu) -> list[float]:
     return [*found, ratio]
 
 
-@pytest.mark.few(5)
+@pytest.mark.few(2)
 @pytest.mark.parametrize("name", COMPONENTS)
 def test_the_values_of_dual_numbers_are_those_of_plain_ones(gcc, tmp_path, name):
     for file, text in sources(COMPONENTS[name]).items():

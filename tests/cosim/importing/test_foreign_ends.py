@@ -60,7 +60,7 @@ def test_the_trace_goes_as_far_as_the_fmu(
     assert len(trace["weft.travel"]) == 51 and np.all(np.diff(trace["weft.travel"][1:]) > 0.0)
 
 
-@pytest.mark.few(4)
+@pytest.mark.few(1, each="word")
 @pytest.mark.parametrize(
     ("head", "bound", "word"),
     [
