@@ -82,7 +82,7 @@ of_fmi_2 = pytest.mark.parametrize("belt", [2], indirect=True)
 # ---- the bits of a run
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
 def test_it_gives_the_bits_of_the_run(tmp_path: Path, path: Path) -> None:
     scene = loaded(path)

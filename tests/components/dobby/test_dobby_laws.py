@@ -1,7 +1,7 @@
 """DobbyDrive with levers, gears, a spline cam, a table or a plateau, and a HealdFrame behind it."""
 
 from itertools import pairwise
-from math import asin, cos, degrees, pi, radians, sin, sqrt
+from math import asin, cos, degrees, inf, pi, radians, sin, sqrt
 
 import numpy as np
 import pytest
@@ -447,3 +447,20 @@ def test_gears_that_turn_back_are_refused(harmonics):
         assert slowest < 1e-5
         assert drive.problems[1].text.startswith("the rotor would stop or reverse: with gear_harmonic_1")
         assert drive.check() == 2
+
+
+@pytest.mark.parametrize(
+    ("law", "shortest", "what"),
+    [
+        ("plateau", 0.3, "the ramp of the plateau"),
+        ("table", 4.0 * pi / 36, "what a point of the table does to the rotor"),
+        ("spline_cam", 0.25, "a part of the cam"),
+        ("sloped_sine", inf, ""),
+    ],
+)
+def test_the_shortest_event_of_a_law(law, shortest, what):
+    cam = zip(range(1, 7), (0.0, 0.5, 0.75, 1.5, 2.5, 3.0), strict=True)
+    known = {"law": LAWS[law], "ramp_angle": 0.3, "table_points": 36}
+    known |= {f"cam_angle_{number}": angle for number, angle in cam}
+    found, said = DobbyDrive.shortest_event(known.__getitem__)
+    assert found == pytest.approx(shortest, rel=1e-15) and said == what
