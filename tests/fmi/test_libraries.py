@@ -5,7 +5,6 @@ import re
 from pathlib import Path
 
 import pytest
-from sharing import KEPT
 
 from loomfmu.fmi.native import compiler, libraries, platforms
 
@@ -52,7 +51,6 @@ def test_a_machine_for_which_no_fmus_are_built_gets_libraries_of_its_own(
     pytest.importorskip("ziglang", reason="ziglang is not installed")
     monkeypatch.setattr(platforms, "host", lambda: "")
     monkeypatch.setenv("LOOMFMU_CACHE", str(tmp_path / "cache"))
-    monkeypatch.setenv("ZIG_GLOBAL_CACHE_DIR", str(KEPT / "zig"))  # a new one compiles its C library anew
     (tmp_path / "twice.h").write_text("static int twice(int value) { return 2 * value; }\n")
     source = tmp_path / "four.c"
     source.write_text(
