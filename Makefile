@@ -76,6 +76,7 @@ validation: .venv/installed-for-tests
 wheel: .venv/installed
 	rm -rf $(COPY) && mkdir -p $(COPY)
 	cp -R $(PACKAGED) $(COPY)
+	$(BIN)/python -c "from loomfmu.commit import commit; print(commit())" > $(COPY)/src/loomfmu/commit.txt
 	PYTHONPATH=$(COPY)/src $(BIN)/python -c "from loomfmu.fmi.shipping import build_all; build_all()"
 	$(PIP) wheel --no-deps --no-build-isolation --wheel-dir dist $(COPY)
 	rm -r $(COPY)

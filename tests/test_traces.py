@@ -28,6 +28,7 @@ from made_traces import made
 
 import loomfmu
 from loomfmu import LoomfmuError, Trace, cli, units
+from loomfmu.commit import commit
 from loomfmu.cosim.importing import fmus
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.declaring.variables import variables_of
@@ -83,6 +84,7 @@ def test_the_root_says_what_was_run(file: h5py.File, result: loomfmu.Result) -> 
     assert said["scene"] == SCENE
     assert said["status"] == "complete"
     assert said["software"] == f"loomfmu {metadata.version('loomfmu')}"
+    assert said.get("commit", "") == commit()
     assert (said["revolutions"], said["steps_per_revolution"]) == (1.5, 1440)
     assert (said["set"], said["flavour"]) == ("{}", "native")
     assert said["command"] == f"loomfmu run {result.scene.file}"

@@ -12,6 +12,7 @@ import limits
 import live_pages
 import precision
 import pruning
+import reading
 import scaling
 import start_up
 import summary
@@ -36,6 +37,7 @@ BENCHMARKS: dict[str, tuple[str, ModuleType]] = {
     start_up.NAME: ("Start-up", start_up),
     live_pages.NAME: ("The page in which the loom runs", live_pages),
     writing.NAME: ("Writing traces", writing),
+    reading.NAME: ("Reading traces", reading),
     guard.NAME: ("Guard", guard),
 }
 RUNS = (

@@ -10,8 +10,9 @@ import pytest
 
 import loomfmu
 from loomfmu import LoomfmuError
+from loomfmu.declaring.variables import Beside
 from loomfmu.display import progress
-from loomfmu.traces import Verdict
+from loomfmu.traces import Channel, Recording, Verdict
 
 SCENE = """
 title = "a <b>bold</b> title"
@@ -64,6 +65,57 @@ def test_a_folded_dataset_has_whole_revolutions(result: loomfmu.Result) -> None:
     exact = np.interp(np.arange(1000) / 500, turned, result.trace["heald_1.lift"])
     # angles are the same to rounding, and the frame moves by less than a metre in a revolution
     np.testing.assert_allclose(other["heald_1.lift"].values.ravel(), exact, rtol=0, atol=1e-9)
+
+
+def test_a_table_and_a_dataset_have_degrees(result: loomfmu.Result) -> None:
+    table = result.trace.to_pandas("belt.at_risk")
+    assert list(table.columns) == ["belt.at_risk", "shaft_angle", "degrees"] and table.index.name == "time"
+    np.testing.assert_array_equal(table["degrees"], np.degrees(result.trace.shaft_angle))
+    folded = result.trace.to_xarray("belt.margin", fold=8)
+    np.testing.assert_array_equal(folded["degrees"], np.arange(0, 360, 45))
+
+
+def test_spans_of_angle_where_a_condition_is_met(result: loomfmu.Result) -> None:
+    trace = result.trace
+    lift, angle = trace["heald_1.lift"], np.degrees(trace.shaft_angle)
+    for comparison in (">", "<="):
+        spans = trace.angles_where(f"heald_1.lift {comparison} 40 mm")
+        assert len(spans) and np.all(np.diff(spans.ravel()) > 0.0)
+        inside = np.any((angle >= spans[:, :1]) & (angle <= spans[:, 1:]), axis=0)
+        np.testing.assert_array_equal(inside, lift > 0.04 if comparison == ">" else lift <= 0.04)
+        edges = [each for each in spans.ravel() if each not in (angle[0], angle[-1])]
+        np.testing.assert_allclose(np.interp(edges, angle, lift), 0.04, atol=1e-12)  # rounding
+    assert trace.angles_where("heald_1.lift > 40 m").shape == (0, 2)
+    at_risk = trace["belt.at_risk"]
+    (begin, end), *_ = trace.angles_where("belt.at_risk>=1")
+    first = int(np.argmax(at_risk))
+    assert begin == angle[first] and end == angle[first + int(np.argmin(at_risk[first:]))]
+
+
+def test_a_condition_is_not_met_where_the_signal_is_not_known() -> None:
+    channels = [
+        Channel("a", "x", "1", "1", "", 0, beside=Beside(valid_if="sure")),
+        Channel("a", "sure", "1", "1", "", 0, real=False, boolean=True),
+    ]
+    angle = np.arange(6.0)
+    run = Recording("known", channels, lambda *_: None)
+    known = np.array([[1, 1, 0, 1, 1, 1]], dtype="i4").T
+    run.append(angle, np.radians(angle), np.array([[1.0, 1, 1, 1, 0, 2]]).T, known)
+    # at 3 it is known again; between 3 and 4, and 4 and 5, it passes 0.5
+    np.testing.assert_allclose(run.angles_where("a.x > 0.5"), [[0, 2], [3, 3.5], [4.25, 5]], rtol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("condition", "message"),
+    [
+        ("heald_1.lift", "is not a signal, <, <=, > or >=, and a number with its unit"),
+        ("heald_1.lift > 40 rpm", "the condition 'heald_1.lift > 40 rpm': "),
+        ("heald_1.lfit > 40 mm", r"did you mean 'heald_1\.lift'"),
+    ],
+)
+def test_other_conditions_are_refused(result: loomfmu.Result, condition: str, message: str) -> None:
+    with pytest.raises(LoomfmuError, match=message):
+        result.trace.angles_where(condition)
 
 
 def test_what_is_shown_is_escaped(result: loomfmu.Result) -> None:

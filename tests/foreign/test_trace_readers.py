@@ -109,6 +109,36 @@ def by_silx(path: Path) -> Found:
     return found
 
 
+def by_nexusformat(path: Path) -> Found:
+    nexus = pytest.importorskip("nexusformat.nexus")
+    tree = nexus.nxload(str(path))
+    found: dict[str, Any] = {}
+    for name, group in tree.items():
+        if not isinstance(group, nexus.NXgroup):
+            continue
+        if "signal" in group.attrs:  # the default plot
+            assert group.nxsignal.nxname == group.attrs["signal"]
+            assert [axis.nxname for axis in group.nxaxes] == ["time"]
+        for key, field in group.items():
+            found[f"/{name}/{key}"] = field.nxdata
+            found[f"/{name}/{key}@units"] = field.attrs["units"]
+    return found
+
+
+def by_r(path: Path) -> Found:
+    program = """
+        package <- Filter(function(name) requireNamespace(name, quietly = TRUE), c("hdf5r", "rhdf5"))[1]
+        if (is.na(package)) quit(status = 3)
+        path <- commandArgs(TRUE)[1]
+        values <- if (package == "hdf5r") hdf5r::H5File$new(path, "r")[["belt/margin"]][] else
+            rhdf5::h5read(path, "belt/margin")
+        cat(sprintf("%.17g", values), sep = "\\n")
+    """
+    return {
+        "/belt/margin": np.array(said_by("Rscript", "-e", program, str(path), lacks=3).split(), dtype=float)
+    }
+
+
 def by_ncdump(path: Path) -> Found:
     text = said_by("ncdump", "-p", "9,17", str(path))
     return {
@@ -127,10 +157,15 @@ def by_octave(path: Path) -> Found:
     return {"/belt/margin": np.array(text.split(), dtype=float)}
 
 
-def said_by(*command: str) -> str:
+def said_by(*command: str, lacks: int | None = None) -> str:
+    """The output of a command; `lacks` is the status by which it says that it lacks a package of its own."""
     if not shutil.which(command[0]):
         pytest.skip(f"{command[0]} is not installed")
-    return subprocess.run(command, check=True, capture_output=True, text=True, timeout=120).stdout
+    run = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    if run.returncode == lacks:
+        pytest.skip(f"{command[0]} lacks its package for HDF5")
+    assert run.returncode == 0, run.stderr
+    return run.stdout
 
 
 READERS = {
@@ -139,9 +174,11 @@ READERS = {
     "xarray-netcdf4": by_xarray("netcdf4"),
     "SDF": by_sdf,
     "silx": by_silx,
+    "nexusformat": by_nexusformat,
     "ncdump": by_ncdump,
     "h5dump": by_h5dump,
     "octave": by_octave,
+    "R": by_r,
 }
 WHOLE = ("netCDF4", "xarray-h5netcdf", "xarray-netcdf4")  # these give all values and attributes
 
@@ -163,6 +200,37 @@ def test_a_group_becomes_a_netcdf_file(path: Path, tmp_path: Path) -> None:
     belt = xarray.open_dataset(path, group="belt", engine="h5netcdf")
     belt.to_netcdf(tmp_path / "belt.nc", engine="h5netcdf")
     assert xarray.open_dataset(tmp_path / "belt.nc", engine="h5netcdf").identical(belt)
+
+
+TABLES: dict[str, Callable[[Any, str], dict[str, list[Any]]]] = {
+    "pandas": lambda pandas, path: pandas.read_parquet(path).to_dict("list"),
+    "polars": lambda polars, path: polars.read_parquet(path).to_dict(as_series=False),
+    "duckdb": lambda duckdb, path: {
+        name: values.tolist() for name, values in duckdb.sql(f"SELECT * FROM '{path}'").fetchnumpy().items()
+    },
+}
+
+
+@pytest.fixture(scope="module")
+def swept(tmp_path_factory: pytest.TempPathFactory) -> loomfmu.Sweep:
+    """A sweep whose second row could not be run, so that it lacks values."""
+    folder = tmp_path_factory.mktemp("table")
+    scene = (SIMS / "wl680_3600.toml").as_posix()
+    text = f'title = "Speeds"\nscene = "{scene}"\nvalues = ["belt.margin", "belt.at_risk"]\n'
+    text += '[grid]\n"shaft.speed" = ["600 rpm", "-1 rpm", "700 rpm"]\n[traces]\nfailures = 0\nsample = 0\n'
+    (folder / "sweep.toml").write_text(text)
+    return loomfmu.sweep(folder / "sweep.toml", processes=1, output=folder / "out")
+
+
+@pytest.mark.parametrize("reader", TABLES)
+def test_other_programs_read_the_table_of_a_sweep(reader: str, swept: loomfmu.Sweep) -> None:
+    found = TABLES[reader](pytest.importorskip(reader), str(swept.path))
+    expected = swept.table.to_pydict()
+    assert found.keys() == expected.keys()
+    for name, values in expected.items():
+        for value, other in zip(values, found[name], strict=True):
+            lacking = other is None or other != other or str(other) in ("<NA>", "--")
+            assert lacking if value is None else other == value, name
 
 
 # A run has no date, and CF wants a time since one; links to one time are one dimension under several names

@@ -8,6 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from ..commit import commit
 from ..fmi.native.libraries import library_of
 from .importing.fmus import Fmu
 from .importing.ports import Value
@@ -24,7 +25,7 @@ def attributes(plan: Plan, flavour: str, folder: Path) -> dict[str, str | float]
 
     `heading` is made of the values of the run, `title` is the scene's own. `files` are the texts of the files
     that the scene names, `set` the values that differ from the scene, as `--set` takes them; `command`
-    repeats the run. `duration` and `step` are in s.
+    repeats the run. `duration` and `step` are in s. `commit` is absent where it is not known.
     """
     scene = plan.scene
     fmus = _fmus(plan.pruned.scene)
@@ -44,6 +45,7 @@ def attributes(plan: Plan, flavour: str, folder: Path) -> dict[str, str | float]
             if scene.step is None
             else {"duration": scene.periods, "step": scene.step}
         ),
+        **({"commit": commit()} if commit() else {}),
         **({} if scene.accuracy is None else {"accuracy": scene.accuracy}),
         "grid": scene.grid,
         **({"notes": "\n".join(scene.notes)} if scene.notes else {}),

@@ -18,6 +18,7 @@ PLAIN = {
     "ended_by": "Ended early by",
     "status": "Status",
     "software": "Software",
+    "commit": "Commit",
 }
 
 

@@ -27,11 +27,16 @@ def dataset(
     import xarray
 
     of_angle = {"units": "rad", "long_name": "shaft angle"}
+    of_degrees = {"units": "degree", "long_name": "shaft angle"}
     of_time = {"units": "s", "long_name": "time"}
     coordinates: dict[str, Any]
     variables: dict[str, Any]
     if fold is False:
-        coordinates = {"time": ("time", time, of_time), "shaft_angle": ("time", shaft_angle, of_angle)}
+        coordinates = {
+            "time": ("time", time, of_time),
+            "shaft_angle": ("time", shaft_angle, of_angle),
+            "degrees": ("time", np.degrees(shaft_angle), of_degrees),
+        }
         variables = {name: ("time", values, about) for name, (values, about) in signals.items()}
         return xarray.Dataset(variables, coordinates)
     turned, way = _turned(run, shaft_angle)
@@ -52,6 +57,7 @@ def dataset(
     coordinates = {
         "revolution": ("revolution", np.arange(first, last) - begun + 1),
         "angle": ("angle", TURN * angles, of_angle),
+        "degrees": ("angle", 360.0 * angles, of_degrees),
         "time": (dims, folded(time), of_time),
     }
     variables = {name: (dims, folded(values), about) for name, (values, about) in signals.items()}

@@ -180,6 +180,7 @@ class Signals(ABC):
     def to_xarray(self, *signals: str, fold: bool | int = False) -> Any:
         """The signals, or these alone, as an xarray `Dataset`: in SI, with units and the shaft's angle.
 
+        The angle is a coordinate in rad, and once more in deg, as `degrees`.
         Folded, there is a row for each whole revolution, along the angle within it [rad]: `fold` is the
         number of angles, or True for as many as there are samples in a revolution.
 
@@ -194,6 +195,29 @@ class Signals(ABC):
             for name in signals or tuple(self)
         }
         return dataset(self.name, self.time, self.shaft_angle, columns, fold)
+
+    def to_pandas(self, *signals: str) -> Any:
+        """The signals, or these alone, as a pandas `DataFrame` over time [s]: in SI.
+
+        Beside them it has the shaft's angle as `shaft_angle` [rad] and `degrees` [deg]. Raises LoomfmuError
+        as `to_xarray`.
+        """
+        return self.to_xarray(*signals).to_dataframe()
+
+    def angles_where(self, condition: str) -> Floats:
+        """The spans of the shaft's angle [deg] in which a signal meets a condition, a row (begin, end) each.
+
+        The condition is such as `"heald_1.lift > 40 mm"`, with <, <=, > or >=. Angles are those of
+        `shaft_angle`, not wrapped. Between samples, real numbers are joined by lines, all others keep their
+        last value; no condition is met where a signal is not known.
+
+        Raises:
+            LoomfmuError: another condition, an unknown signal, a wrong unit, or a shaft that does not turn
+                forwards
+        """
+        from .conditions import angles_where
+
+        return angles_where(self, condition)
 
     def description(self, signal: str) -> str:
         """Return the description of a signal."""
