@@ -118,3 +118,11 @@ def test_a_coasting_shaft_stops_where_its_energy_is_used_up():
     far = run([0.0] * 300, torque_slope=0.0, speed=10.0 * pi, viscous_friction=40.0)[-1]
     assert far["angle"] == pytest.approx(2.0 * 10.0 * pi / 40.0, rel=1e-13)
     assert far["load_work"] == pytest.approx((10.0 * pi) ** 2, rel=1e-12)
+
+
+def test_a_turn_of_the_speed_far_from_rest_keeps_the_stated_work():
+    shaft = DrivenShaft(inputs_at_step_end=True, use_work_1=True, torque_1=100.0, dry_friction=20.0)
+    assert shaft.initialize(0.0) == 0
+    shaft.torque_1, shaft.work_1 = -100.0, 1.0  # slower first, then faster again
+    assert shaft.step(0.0, 0.01) == 0
+    assert shaft.load_work - shaft.other_work == pytest.approx(1.0, rel=1e-12)  # roundings of some 40 J

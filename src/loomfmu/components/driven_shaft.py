@@ -8,7 +8,7 @@ from ..declaring.arrays import array
 from ..declaring.declarations import at_step_end, input_, output, parameter, state
 from ..declaring.variables import Component, Terminal
 from ..physics.driven_shaft import bulge_for, driven_motion, summed, work_of
-from ..physics.shaft_friction import opposed_motion, sense_of
+from ..physics.shaft_friction import opposed_motion, sense_of, stopping_share
 from .shared_declarations import shaft_speed, shaft_start
 from .terminals import SHAFT
 
@@ -174,9 +174,10 @@ class DrivenShaft(Component):
         mean = self.velocity + more
         path = mean * sense
         # where the shaft may stop, or is at rest, friction changes within the step
-        turns = sense * net < 0.0 and sense * (net - rise - slope * gained) > 0.0
-        stops = self.dry_friction > 0.0 and (turns or sense * (self.velocity + gained) <= 0.0)
-        if stops or (self.dry_friction > 0.0 and self.velocity == 0.0):
+        stops = self.velocity == 0.0 or sense * (self.velocity + gained) <= 0.0
+        if self.dry_friction > 0.0 and not stops:
+            stops = stopping_share(self.velocity, net, rise, step_size, self.inertia, slope, sense) < 1.0
+        if self.dry_friction > 0.0 and stops:
             bulge = 0.0
             end, mean, second, path = opposed_motion(
                 self.velocity, free, rise, step_size, self.inertia, slope, self.dry_friction
