@@ -20,3 +20,12 @@ def test_the_wrap_of_a_belt_follows_its_formula_everywhere(stiffness, diameter, 
     assert wrap.lever_arm == pytest.approx(float(arm), rel=1e-15)
     assert wrap.restraint_load == pytest.approx(float(2 * MP.mpf(stiffness) / (diameter * arm)), rel=2e-15)
     assert wrap.bending_moment == pytest.approx(2.0 * stiffness / diameter, rel=1e-15)
+
+
+@settings(max_examples=100)
+@given(st.floats(1e-6, 0.1), st.floats(1e-3, 10.0))
+def test_the_outer_face_of_a_wrapped_belt_is_longer_than_its_middle(thickness, diameter):
+    wrap = BeltWrap(thickness=thickness, wheel_diameter=diameter)
+    assert wrap.initialize(0.0) == 0
+    face, middle = (MP.pi * (diameter + layer * MP.mpf(thickness)) for layer in (2, 1))  # of a full turn
+    assert wrap.bending_strain == pytest.approx(float((face - middle) / middle), rel=1e-15)

@@ -204,10 +204,10 @@ def test_energy_is_balanced():
 def test_all_torques_count_alike_and_every_output_feels_them():
     outputs = [v.name for v in variables_of(DrivenShaft) if v.causality == "output"]
     for at_end in (False, True):
-        undisturbed = run(started(inputs_at_step_end=at_end), [1e-3])
+        undisturbed = run(started(inputs_at_step_end=at_end, viscous_friction=1.0), [1e-3])
         found = []
         for name in TORQUES:
-            shaft = started(inputs_at_step_end=at_end)
+            shaft = started(inputs_at_step_end=at_end, viscous_friction=1.0)
             setattr(shaft, name, 10.0)
             shaft.step(0.0, 1e-3)
             found.append(values(shaft, "output"))
@@ -257,6 +257,7 @@ def test_starting_amid_a_load():
         "acceleration": -20.0,
         "motor_torque": 0.0,
         "load_torque": 40.0,
+        "friction_torque": 0.0,
         "motor_power": 0.0,
         "motor_power_rate": 800.0 * FULL,
         "motor_work": 0.0,

@@ -105,7 +105,7 @@ def solved(times):
         travel, velocity, acceleration = harmonic(t)
         sign = 1.0 if SPEED * t < pi else -1.0
         length = 0.6 + travel if sign > 0.0 else 4.6 - travel
-        limit = gain * (0.05 + 30e-6 * velocity**2 + brake_at(SPEED * t))
+        limit = gain * (0.05 + brake_at(SPEED * t)) + 30e-6 * velocity**2
         return length, sign * velocity, sign * acceleration, limit
 
     def rate(t, force):
@@ -327,7 +327,7 @@ def test_the_brake_holds_and_yields_without_chatter():
 def test_a_weft_that_is_carried_at_the_start_is_drawn_steadily():
     weft = WeftTension(travel=1.0, velocity=10.0, acceleration=0.0, **{"air_friction": 0.0})
     assert weft.initialize(0.0) == 0
-    assert weft.tension == pytest.approx(exp(0.1 * pi) * (0.05 + 0.2 + 30e-6 * 100.0), rel=1e-12)
+    assert weft.tension == pytest.approx(exp(0.1 * pi) * (0.05 + 0.2) + 30e-6 * 100.0, rel=1e-12)
     late = WeftTension(travel=1.0, velocity=-10.0)
     assert late.initialize(0.0) == 0
     assert late.carried and late.length == pytest.approx(0.6 + 1.0 - 0.1)

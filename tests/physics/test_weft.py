@@ -1,9 +1,10 @@
 """Weft yarn: capstan, drag, momentum and stretch one by one, and a yielding brake in 50 digits."""
 
-from math import exp, pi
+from math import cos, exp, pi, sin
 
+import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from reference import MP
 
@@ -41,11 +42,50 @@ def test_drag_is_the_friction_on_the_yarns_surface():
     )
 
 
+def over_eyes(tension, density, speed, friction, angles, corners):
+    """Tension behind eyes, by the balance of forces and momentum of the yarn at each of many small corners.
+
+    The eye pushes outwards along the bisector, and friction acts across it, backwards.
+    Where it would have to pull, it lets go.
+    """
+    for angle in angles:
+        turn = angle / corners
+        coming, going = np.array([1.0, 0.0]), np.array([cos(turn), sin(turn)])
+        push = (coming - going) / np.linalg.norm(going - coming)
+        eye = push + friction * np.array([push[1], -push[0]])  # on the yarn, for 1 N of pressure
+        for _ in range(corners):
+            # T2 t2 - T1 t1 + N eye = q v^2 (t2 - t1)
+            momentum = density * speed**2 * (going - coming)
+            after, pressure = np.linalg.solve(np.array([going, eye]).T, momentum + tension * coming)
+            tension = after if pressure > 0.0 else tension
+    return tension
+
+
+@settings(max_examples=100, deadline=None)
+@given(
+    st.floats(0.0, 1.0),
+    st.floats(1e-6, 1e-4),
+    st.floats(0.0, 80.0),
+    st.floats(0.0, 4.0),
+    st.floats(0.0, 0.5),
+    st.lists(st.floats(0.1, 2.0), min_size=1, max_size=4),
+)
+def test_running_yarn_over_eyes_by_its_momentum(before, density, speed, unwinding, friction, angles):
+    limit, _rate = drawing_limit(
+        capstan_gain(friction, sum(angles)), before, unwinding * density, density, 0.0, 0.0, speed, 0.0
+    )
+    start = before + unwinding * density * speed**2
+    # (1 + f) / (1 - f) with f = mu tan(turn / 2) at each corner: third order in turns of at most 0.02
+    assert limit == pytest.approx(
+        over_eyes(start, density, speed, friction, angles, 100), rel=1e-4, abs=1e-4 * density * speed**2
+    )
+
+
 @given(st.floats(-50.0, 50.0), st.floats(-5e3, 5e3), st.floats(0.1, 5.0))
 def test_momentum_alone(speed, acceleration, length):
     """Without brake, eyes and drag the head supplies the yarn's momentum: d(q L v)/dt, as L' = v."""
     density = 30e-6
-    limit, _rate = drawing_limit(1.0, 0.0, density, 0.0, 0.0, speed, acceleration)
+    limit, _rate = drawing_limit(1.0, 0.0, density, density, 0.0, 0.0, speed, acceleration)
     exact = density * (MP.mpf(speed) ** 2 + MP.mpf(length) * acceleration)
     found = limit + moving_load(length, speed, acceleration, density, 0.0)
     # a few roundings of both terms, and what lies below the smallest floats
@@ -61,8 +101,8 @@ def test_rates_of_limit_and_load(speed, acceleration, jerk, length):
             MP.mpf(acceleration) + jerk * t,
         )
 
-    _limit, rate = drawing_limit(1.5, 0.1, 3e-5, 0.2, 4.0, speed, acceleration)
-    exact = MP.diff(lambda t: 1.5 * (0.1 + 3e-5 * moved(t)[1] ** 2 + 0.2 + 4 * t), 0)
+    _limit, rate = drawing_limit(1.5, 0.1, 5e-5, 3e-5, 0.2, 4.0, speed, acceleration)
+    exact = MP.diff(lambda t: 1.5 * (0.3 + 2e-5 * moved(t)[1] ** 2 + 4 * t) + 3e-5 * moved(t)[1] ** 2, 0)
     assert rate == pytest.approx(float(exact), rel=1e-12, abs=1e-12)
     exact = MP.diff(lambda t: moved(t)[0] * (3e-5 * moved(t)[2] + 1.5e-5 * moved(t)[1] ** 2), 0)
     size = 3e-5 * (abs(speed * acceleration) + length * abs(jerk) + abs(speed) ** 3 + 1.0)

@@ -6,7 +6,7 @@ from typing import ClassVar
 
 from ..declaring.declarations import input_, output, parameter
 from ..declaring.variables import NOTHING, PUBLISHED, Component
-from ..physics.belt_wrap import bending_moment, lever_arm, restraint_load
+from ..physics.belt_wrap import bending_moment, bending_strain, lever_arm, restraint_load
 from .shared_declarations import found_once
 
 
@@ -23,6 +23,15 @@ class BeltWrap(Component):
     )
     wheel_diameter: float = parameter(
         "m", 0.397, "Bottom diameter of the rapier wheel", display="mm", minimum=1e-3, maximum=10.0
+    )
+    thickness: float = parameter(
+        "m",
+        1.35e-3,
+        "Thickness of the belt, for its strain (published: 30 mm x 1.35 mm)",
+        display="mm",
+        minimum=1e-6,
+        maximum=0.1,
+        nominal=1e-3,
     )
     wrap_angle: float = parameter(
         "rad",
@@ -48,10 +57,12 @@ class BeltWrap(Component):
         "N", "Load of each block on the belt", nominal=10.0, follows="block_clearance"
     )
     bending_moment: float = found_once("N.m", "Moment that bends the belt onto the wheel")
+    bending_strain: float = found_once("1", "Strain of the belt's outer face on the wheel", nominal=0.01)
 
     def initialize(self, time: float) -> int:
         """Bend the belt to the wheel."""
         self.bending_moment = bending_moment(self.bending_stiffness, self.wheel_diameter)
+        self.bending_strain = bending_strain(self.thickness, self.wheel_diameter)
         return self.step(time, 0.0)
 
     def step(self, time: float, step_size: float) -> int:

@@ -8,6 +8,7 @@ from ..declaring.arrays import array
 from ..declaring.declarations import at_step_end, input_, output, parameter, state
 from ..declaring.variables import Component, Terminal
 from ..physics.driven_shaft import bulge_for, driven_motion, summed, work_of
+from ..physics.shaft_friction import opposed_motion, sense_of, stopping_share
 from .shared_declarations import shaft_speed, shaft_start
 from .terminals import SHAFT
 
@@ -42,6 +43,22 @@ class DrivenShaft(Component):
         "Inertia of shaft, motor and flywheel, referred to the shaft (assumed)",
         minimum=1e-6,
         maximum=1e6,
+    )
+    dry_friction: float = parameter(
+        "N.m",
+        0.0,
+        "Dry friction of the shaft: opposes its motion, and holds it at rest against torques up to this",
+        minimum=0.0,
+        maximum=1e9,
+        nominal=10.0,
+    )
+    viscous_friction: float = parameter(
+        "N.m.s/rad",
+        0.0,
+        "Viscous friction of the shaft: torque that opposes motion, per rad/s",
+        minimum=0.0,
+        maximum=1e9,
+        nominal=1.0,
     )
     start_angle: float = shaft_start("Shaft angle at the start; 0 is the rapiers' outer dead centre")
     start_at_speed: bool = parameter("1", True, "Start at speed; if false, from rest")
@@ -94,14 +111,19 @@ class DrivenShaft(Component):
     acceleration: float = output("rad/s2", "Shaft acceleration", nominal=100.0)
     motor_torque: float = output("N.m", "Motor torque on the shaft", nominal=10.0)
     load_torque: float = output("N.m", "Load torque of all mechanisms, braking", nominal=10.0)
+    friction_torque: float = output(
+        "N.m", "Torque of dry and viscous friction, braking; at rest what holds the shaft", nominal=10.0
+    )
     motor_power: float = output(
         "W", "Power of the motor", display="kW", nominal=1000.0, rate="motor_power_rate"
     )
     motor_power_rate: float = output("W/s", "Rate of motor_power", nominal=1e5)
     motor_work: float = output("J", "Work of the motor since the start", nominal=100.0, rate="motor_power")
-    load_work: float = output("J", "Work of the shaft on all mechanisms since the start", nominal=100.0)
+    load_work: float = output(
+        "J", "Work of the shaft on all mechanisms and friction since the start", nominal=100.0
+    )
     other_work: float = output(
-        "J", "Part of load_work that no mechanism states: of torques without work_1 and so on", nominal=100.0
+        "J", "Part of load_work that no mechanism states: friction, and torques without work", nominal=100.0
     )
     kinetic_energy: float = output("J", "Kinetic energy of inertia", nominal=1000.0)
     angle_rest: float = state("rad", "Rounding error of the angle, carried on")
@@ -128,7 +150,10 @@ class DrivenShaft(Component):
         held, held_coupled = load, coupled
         if self.inputs_at_step_end:
             held, held_coupled = self.load_torque, self.coupled_torque
-        net = self.drive() - held
+        slope = self.torque_slope + self.viscous_friction
+        free = self.drive() - self.viscous_friction * self.velocity - held
+        sense = sense_of(self.velocity, free, self.dry_friction)
+        net = free - self.dry_friction * sense
         rise = load - held
         bulge = 0.0
         if self.inputs_at_step_end:
@@ -141,18 +166,38 @@ class DrivenShaft(Component):
                 rise,
                 step_size,
                 self.inertia,
-                self.torque_slope,
+                slope,
             )
         gained, more, second, third = driven_motion(
-            self.velocity, net, rise, bulge, step_size, self.inertia, self.torque_slope
+            self.velocity, net, rise, bulge, step_size, self.inertia, slope
         )
         mean = self.velocity + more
+        path = mean * sense
+        # where the shaft may stop, or is at rest, friction changes within the step
+        stops = self.velocity == 0.0 or sense * (self.velocity + gained) <= 0.0
+        if self.dry_friction > 0.0 and not stops:
+            stops = stopping_share(self.velocity, net, rise, step_size, self.inertia, slope, sense) < 1.0
+        if self.dry_friction > 0.0 and stops:
+            bulge = 0.0
+            end, mean, second, path = opposed_motion(
+                self.velocity, free, rise, step_size, self.inertia, slope, self.dry_friction
+            )
+            more = mean - self.velocity
+            gained = end - self.velocity
+            if end == 0.0:
+                self.velocity_rest = 0.0
         done = work_of(held, rise, bulge, step_size, mean, second, third)
-        self.load_work += done
-        self.other_work += work_of(
+        kinetic = self.inertia * gained * (self.velocity + 0.5 * gained)
+        rubbed = self.dry_friction * step_size * path
+        if self.viscous_friction > 0.0:
+            # the energy balance holds the integral of the squared velocity, which motor and friction share
+            given = self.torque_slope * self.speed * step_size * mean
+            rubbed = rubbed + self.viscous_friction / slope * (given - done - rubbed - kinetic)
+        self.load_work += done + rubbed
+        self.other_work += rubbed + work_of(
             held - held_coupled, rise - (coupled - held_coupled), 0.0, step_size, mean, second, third
         )
-        self.motor_work += done + self.inertia * gained * (self.velocity + 0.5 * gained)
+        self.motor_work += done + rubbed + kinetic
         self.angle, self.angle_rest = summed(
             self.angle, self.angle_rest, self.velocity * step_size + more * step_size
         )
@@ -182,7 +227,12 @@ class DrivenShaft(Component):
         self.coupled_torque = coupled
         self.coupled_work = work
         self.motor_torque = self.drive()
-        self.acceleration = (self.motor_torque - self.load_torque) / self.inertia
+        free = self.motor_torque - load
+        sense = sense_of(self.velocity, free - self.viscous_friction * self.velocity, self.dry_friction)
+        self.friction_torque = self.viscous_friction * self.velocity + self.dry_friction * sense
+        if sense == 0.0:
+            self.friction_torque = free
+        self.acceleration = (free - self.friction_torque) / self.inertia
         self.motor_power = self.motor_torque * self.velocity
         self.motor_power_rate = (self.motor_torque - self.torque_slope * self.velocity) * self.acceleration
         self.kinetic_energy = 0.5 * self.inertia * self.velocity * self.velocity

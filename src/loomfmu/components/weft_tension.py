@@ -119,6 +119,7 @@ class WeftTension(WeftVariables):
             self.gain,
             self.supply_tension,
             self.unwinding_factor * self.linear_density,
+            self.linear_density,
             self.brake_force,
             list(self.brake_program),
         )

@@ -82,3 +82,21 @@ def restraint_load(stiffness: float, diameter: float, clearance: float) -> float
     38.67
     """
     return bending_moment(stiffness, diameter) / lever_arm(diameter, clearance)
+
+
+def bending_strain(thickness: float, diameter: float) -> float:
+    """Strain of the belt's outer face on its wheel, `e = t / (D + t)`.
+
+    The face is t / 2 from the belt's middle, which lies on a radius of (D + t) / 2.
+
+    Args:
+        thickness: t of the belt [m]
+        diameter: bottom diameter D of the rapier wheel [m]
+
+    Returns:
+        strain [1]
+
+    >>> round(100 * bending_strain(1.35e-3, 0.397), 3)  # per cent
+    0.339
+    """
+    return thickness / (diameter + thickness)

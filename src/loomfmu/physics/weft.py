@@ -61,31 +61,39 @@ def eased(start: float, end: float, share: float) -> tuple[float, float]:
 def drawing_limit(
     gain: float,
     supply: float,
+    unwound: float,
     density: float,
     brake: float,
     brake_rate: float,
     speed: float,
     acceleration: float,
 ) -> tuple[float, float]:
-    """Tension behind the last eye at which the brake lets yarn through, `g (T0 + q v^2 + B)`, and its rate.
+    """Tension behind the last eye at which the brake lets yarn through, and its rate.
+
+    Yarn that runs round an eye presses on it with `T - q v^2` for each radian: the rest turns its momentum.
+    So `T - q v^2` is what friction multiplies, and before the eyes `T = T0 + m v^2 + B`. Where that is less
+    than `q v^2` the yarn is off its eyes, and its tension passes them unchanged.
 
     Args:
         gain: g of all eyes, from `capstan_gain` [1]
         supply: tension T0 at the package [N]
-        density: q, that of the yarn times the factor for its balloon [kg/m]
+        unwound: m, the yarn's mass per length times the factor for its balloon [kg/m]
+        density: q of the yarn [kg/m]
         brake, brake_rate: force B of the brake and its rate [N, N/s]
         speed, acceleration: v and v' of the yarn [m/s, m/s2]
 
     Returns:
         H [N], its rate [N/s]
 
-    >>> drawing_limit(2.0, 0.5, 0.01, 1.0, 3.0, 10.0, 100.0)
-    (5.0, 46.0)
+    >>> drawing_limit(2.0, 0.5, 0.01, 0.01, 1.0, 3.0, 10.0, 100.0)
+    (4.0, 26.0)
     """
-    return (
-        gain * (supply + density * speed * speed + brake),
-        gain * (2.0 * density * speed * acceleration + brake_rate),
-    )
+    momentum = density * speed * speed
+    turning = 2.0 * density * speed * acceleration
+    pressing = supply + unwound * speed * speed + brake - momentum
+    pressing_rate = 2.0 * unwound * speed * acceleration + brake_rate - turning
+    grip = gain if pressing > 0.0 else 1.0
+    return grip * pressing + momentum, grip * pressing_rate + turning
 
 
 def stretch_force(stiffness: float, length: float, unstretched: float) -> float:

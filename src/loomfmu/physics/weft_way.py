@@ -34,12 +34,13 @@ PEAK = 6
 class Brake:
     """Brake and eyes: gain of all eyes, tension from the package [N], mass that it unwinds [kg/m].
 
-    Largest force of the brake [N], and its share of that at each point of the program.
+    Mass of the yarn [kg/m], largest force of the brake [N], and its share of that at each point.
     """
 
     gain: float
     supply: float
     unwound: float
+    density: float
     force: float
     program: list[float]
 
@@ -105,7 +106,9 @@ def limit_for(
 ) -> tuple[float, float]:
     """Limit of the tension behind the eyes and its rate, for a motion of shaft and head."""
     force, rate = braking(brake, point, angle, speed)
-    return drawing_limit(brake.gain, brake.supply, brake.unwound, force, rate, velocity, acceleration)
+    return drawing_limit(
+        brake.gain, brake.supply, brake.unwound, brake.density, force, rate, velocity, acceleration
+    )
 
 
 def place_at(way: Way, share: float) -> float:
