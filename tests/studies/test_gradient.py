@@ -76,9 +76,7 @@ def test_derivatives_are_those_that_differences_of_runs_approach(case):
             # rounding of the numbers is the rest of a difference
             scale = [1e-12 * abs(number) / step for number in found.numbers]
             for got, wanted, rounding in zip(found.si[:, column], differences, scale, strict=True):
-                assert got == pytest.approx(
-                    wanted, rel=STARTING if name == "start_up" else SMOOTH, abs=rounding
-                )
+                assert got == pytest.approx(wanted, rel=near, abs=rounding)
 
 
 def test_it_shows_a_table_with_the_units_that_people_read():

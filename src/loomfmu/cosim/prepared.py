@@ -6,13 +6,13 @@ import threading
 from collections import OrderedDict
 from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import ExitStack
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 from time import perf_counter
 from typing import Any, Literal, NamedTuple, get_args
 
 from ..errors import LoomfmuError, path_of, shown, suggestion
-from ..traces import Early, Signals, TraceWriter, Verdict
+from ..traces import Early, Recording, Signals, TraceWriter, Verdict
 from . import accuracy
 from .claims import judging
 from .claims.claim import Claim
@@ -49,6 +49,7 @@ class Derived(NamedTuple):
     early: Early
     directions: list[Direction]
     judged: Callable[[Signals], tuple[Verdict, ...]]
+    recording: Recording
 
 
 class Pattern:
@@ -70,7 +71,6 @@ class Pattern:
         self._estimates = Estimates(requested, self._all, self._on, len(needed), places)
         self.judged = tuple(dict.fromkeys([*needed, *self._estimates.shown]))
         self.values = Values(self.scene)
-        self._tangents: Tangents | None = None
         self._steps = 0  # in a revolution, as they were chosen last
 
     def stepping(self, signals: Sequence[str]) -> Stepping:
@@ -131,18 +131,21 @@ class Pattern:
             chosen=chosen,
         )
 
+    @cached_property
+    def tangents(self) -> Tangents:
+        """Its components with dual numbers. Raises LoomfmuError where there are none."""
+        return Tangents(self.scene, self.judged)
+
     def derived(self, scene: Scene, moved: Sequence[tuple[Scene, float]]) -> Derived:
         """Run what the claims need, with derivatives towards scenes that differ by a change of a value."""
         scene, _known, _chosen = self._with_steps(scene, "none")
         grid = self.grid(scene, self.judged)
-        if self._tangents is None:
-            self._tangents = Tangents(self.scene, self.judged)
         run = self._in_memory(scene, self.judged, grid)
         directions = [
-            self._tangents.along(scene, grid, seeds_of(scene, other, change), run.recording)
+            self.tangents.along(scene, grid, seeds_of(scene, other, change), run.recording)
             for other, change in moved
         ]
-        return Derived(self._judged(run.recording), run.early, directions, self._judged)
+        return Derived(self._judged(run.recording), run.early, directions, self._judged, run.recording)
 
     def _with_steps(self, scene: Scene, errors: Errors = "all") -> tuple[Scene, Coarser | None, str]:
         """The scene with steps that reach its accuracy, what coarser ones gave, and a line that says so.
@@ -272,6 +275,14 @@ class Prepared:
             except MemoryError:
                 too_many = f"{scene.steps + 1} samples do not fit in memory"
                 raise LoomfmuError(f"{scene.name}: {too_many}; take fewer revolutions or steps") from None
+
+    @property
+    def has_derivatives(self) -> bool:
+        """Return whether `derived` can derive its runs: no loops, and native FMUs of ours alone."""
+        try:
+            return bool(self._base.tangents)
+        except LoomfmuError:
+            return False
 
     def derived(self, set: Mapping[str, Any], moves: Sequence[tuple[Mapping[str, Any], float]]) -> Derived:
         """Run what the claims need with these values, and derive it by some of them.
