@@ -2,6 +2,7 @@
 
 `run` co-simulates a scene and records it, `evaluate` does so in memory, `prepare` gets it ready for many
 runs, `sweep` runs it with many values, `limit` finds how far a value may go, `optimize` the best design,
+`gradient` the derivatives of claims,
 `fit` values from measured curves; `Trace` reads a recorded run, `judge` judges a claim on it, `compare`
 compares two. `design` solves the same physics for a design; `report` and `live_page` write pages.
 """
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
     from .loom.judged import judge as judge
     from .studies.fitting.fit import Fit as Fit
     from .studies.fitting.fit import fit as fit
+    from .studies.gradient import Gradient as Gradient
+    from .studies.gradient import gradient as gradient
     from .studies.limits.boundary import limit as limit
     from .studies.limits.results import Boundary as Boundary
     from .studies.limits.results import Limits as Limits
@@ -45,6 +48,7 @@ _HOMES = {
     "Comparison": "traces",
     "Evaluation": "cosim.results",
     "Fit": "studies.fitting.fit",
+    "Gradient": "studies.gradient",
     "Limits": "studies.limits.results",
     "LoomfmuError": "errors",
     "Optimum": "studies.optimizing.optimum",
@@ -61,6 +65,7 @@ _HOMES = {
     "judge": "loom.judged",
     "live_page": "",
     "report": "",
+    "gradient": "studies.gradient",
     "fit": "studies.fitting.fit",
     "limit": "studies.limits.boundary",
     "optimize": "studies.optimizing.optimize",

@@ -77,13 +77,13 @@ def test_its_description_is_that_of_the_live_flavour_but_for_what_it_can_do(buil
 
 @either_fmi
 @every_fmu
-def test_it_exports_the_functions_of_the_standard_and_needs_only_libc_and_libm(package, name, fmi):
+def test_it_exports_the_functions_of_the_standard_its_duals_and_needs_only_libc_and_libm(package, name, fmi):
     header = (native_fmu.HEADERS / f"fmi{fmi}Functions.h").read_text()
     wanted = set(re.findall(rf"#define (fmi{fmi}\w+) +fmi{fmi}FullName\(fmi{fmi}\w+\)", header))
     assert {f"fmi{fmi}Terminate", "fmi2NewDiscreteStates" if fmi == 2 else "fmi3SetTime"} <= wanted
     library = binary(package(name, fmi))
     symbols = output_of("objdump", "-T", library)
-    assert {line.split()[-1] for line in symbols.splitlines() if " g " in line} == wanted
+    assert {line.split()[-1] for line in symbols.splitlines() if " g " in line} == wanted | {"loomfmu_dual"}
     versions = re.findall(r"GLIBC_(\d+)\.(\d+)", symbols)
     assert max((int(major), int(minor)) for major, minor in versions) <= (2, 17)
     needed = {line.split()[0].rsplit("/", 1)[-1] for line in output_of("ldd", library).splitlines()}

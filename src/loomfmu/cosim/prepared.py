@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import threading
 from collections import OrderedDict
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import ExitStack
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 from time import perf_counter
-from typing import Any, Literal, get_args
+from typing import Any, Literal, NamedTuple, get_args
 
 from ..errors import LoomfmuError, path_of, shown, suggestion
-from ..traces import Signals, TraceWriter, Verdict
+from ..traces import Early, Recording, Signals, TraceWriter, Verdict
 from . import accuracy
 from .claims import judging
 from .claims.claim import Claim
@@ -33,9 +33,23 @@ from .scenes.instances import altered
 from .scenes.scene import Scene
 from .scenes.settings import WINDOWS
 from .scenes.values import Values
+from .tangents import Direction, Tangents, seeds_of
 
 Errors = Literal["all", "near", "none"]  # which verdicts get an estimate of their numerical error
 MOST_PATTERNS = 8  # that are kept ready, such as one for each machine
+
+
+class Derived(NamedTuple):
+    """The verdicts of a run, on its claims and then its measures, and its derivatives in some directions.
+
+    `judged` judges a recording as the run was.
+    """
+
+    verdicts: tuple[Verdict, ...]
+    early: Early
+    directions: list[Direction]
+    judged: Callable[[Signals], tuple[Verdict, ...]]
+    recording: Recording
 
 
 class Pattern:
@@ -116,6 +130,22 @@ class Pattern:
             early=found.early,
             chosen=chosen,
         )
+
+    @cached_property
+    def tangents(self) -> Tangents:
+        """Its components with dual numbers. Raises LoomfmuError where there are none."""
+        return Tangents(self.scene, self.judged)
+
+    def derived(self, scene: Scene, moved: Sequence[tuple[Scene, float]]) -> Derived:
+        """Run what the claims need, with derivatives towards scenes that differ by a change of a value."""
+        scene, _known, _chosen = self._with_steps(scene, "none")
+        grid = self.grid(scene, self.judged)
+        run = self._in_memory(scene, self.judged, grid)
+        directions = [
+            self.tangents.along(scene, grid, seeds_of(scene, other, change), run.recording)
+            for other, change in moved
+        ]
+        return Derived(self._judged(run.recording), run.early, directions, self._judged, run.recording)
 
     def _with_steps(self, scene: Scene, errors: Errors = "all") -> tuple[Scene, Coarser | None, str]:
         """The scene with steps that reach its accuracy, what coarser ones gave, and a line that says so.
@@ -245,6 +275,24 @@ class Prepared:
             except MemoryError:
                 too_many = f"{scene.steps + 1} samples do not fit in memory"
                 raise LoomfmuError(f"{scene.name}: {too_many}; take fewer revolutions or steps") from None
+
+    @property
+    def has_derivatives(self) -> bool:
+        """Return whether `derived` can derive its runs: no loops, and native FMUs of ours alone."""
+        try:
+            return bool(self._base.tangents)
+        except LoomfmuError:
+            return False
+
+    def derived(self, set: Mapping[str, Any], moves: Sequence[tuple[Mapping[str, Any], float]]) -> Derived:
+        """Run what the claims need with these values, and derive it by some of them.
+
+        Each move is a change of one of the values, with the settings after it. Raises LoomfmuError where
+        values have no derivatives, or FMUs.
+        """
+        with self._turn:
+            pattern, scene = self._ready(dict(set))
+            return pattern.derived(scene, [(self._ready({**set, **to})[1], change) for to, change in moves])
 
     def run(
         self,

@@ -3,6 +3,7 @@
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Container, Iterator, Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
@@ -269,6 +270,30 @@ class Recording(Signals):
         self._shared.clear()
         for derived in DERIVED:
             self.__dict__.pop(derived, None)
+
+    def moved(
+        self, time: Floats, reals: Floats, parameter: Callable[[str, str], float | int | bool | None]
+    ) -> "Recording":
+        """Return the recording with other times, real values and parameters."""
+        found = copy(self)
+        found.__dict__ = self.__getstate__() | {"_parameter": parameter, "_parameters": {}, "_blocks": []}
+        angle = reals[:, self._channels["shaft.angle"].column] if "shaft.angle" in self else self.shaft_angle
+        found.append(time, angle, reals, self._joined[3])
+        return found
+
+    @property
+    def reals(self) -> Floats:
+        """All real values, a row for each sample."""
+        found: Floats = self._joined[2]
+        return found
+
+    def column(self, signal: str) -> int:
+        """Return the column of a signal in `reals`."""
+        return self._channel(signal).column
+
+    def start(self, instance: str, variable: str) -> float | int | bool | None:
+        """A parameter of an instance as it was set, or None."""
+        return self._parameter(instance, variable)
 
     def __getstate__(self) -> dict[str, Any]:
         """The samples, without what was derived of them: addresses mean nothing in another process."""

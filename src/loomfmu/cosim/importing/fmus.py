@@ -162,11 +162,17 @@ class Fmu:
         """Its version, as its vendor states it."""
         return self.file.version
 
+    @property
+    def library(self) -> Path:
+        """The library for this machine, if there is one."""
+        here = fmpy.platform if self.fmi == 2 else fmpy.platform_tuple
+        return self.directory / f"binaries/{here}/{self.identifier}{fmpy.sharedLibraryExtension}"
+
     def check_platform(self, where: str) -> None:
         """Refuse a file that has no library for this machine, naming the platforms that it has."""
-        here = fmpy.platform if self.fmi == 2 else fmpy.platform_tuple
-        if (self.directory / f"binaries/{here}/{self.identifier}{fmpy.sharedLibraryExtension}").exists():
+        if self.library.exists():
             return
+        here = self.library.parent.name
         with zipfile.ZipFile(self.path) as archive:
             libraries = [PurePosixPath(name) for name in archive.namelist()]
         matching = [each for each in libraries if each.match(f"binaries/*/{self.identifier}.*")]

@@ -9,6 +9,7 @@ import numpy as np
 
 from ...cosim.prepared import Prepared
 from ...errors import LoomfmuError
+from ..gradient import move_of
 from ..span import Span
 from .curves import Compared, Floats, compared
 from .losses import LEAST_SQUARES, LOSSES
@@ -53,6 +54,7 @@ class Search:
         self._loom, self._data, self._spans = loom, data, spans
         self._loss, self._name = LOSSES[loss], loss
         self.runs = 0
+        self._derived = loom.has_derivatives
         self._weights = np.array([1.0 / (_spread(values) or 1.0) for values in data.columns.values()])
 
     def found(self) -> Found:
@@ -74,20 +76,42 @@ class Search:
         )
         return Found(ended.x, ended.active_mask != 0, here.fun, here.jac, drift, curves)
 
+    def _values(self, shares: Floats) -> tuple[list[float], float]:
+        """Return the values of all parameters in SI, and the offset of the data among them."""
+        values = [span.at(share) for span, share in zip(self._spans, shares.tolist(), strict=True)]
+        pairs = zip(self._spans, values, strict=True)
+        return values, sum(value for span, value in pairs if not span.varied.targets)
+
     def _at(self, shares: Floats) -> list[Compared]:
         """Return measured and computed values with these parameters."""
         self.runs += 1
-        values = [span.at(share) for span, share in zip(self._spans, shares.tolist(), strict=True)]
-        offset = sum(
-            value for span, value in zip(self._spans, values, strict=True) if not span.varied.targets
-        )
+        values, offset = self._values(shares)
         run = self._loom.evaluate(settings(self._spans, values), errors="none")
         run.check_end()
         return compared(self._data, run.trace, offset)
 
     def _residuals(self, shares: Floats) -> Floats:
-        pairs = zip(self._at(shares), self._weights, strict=True)
+        return self._weighed(self._at(shares))
+
+    def _weighed(self, curves: Sequence[Compared]) -> Floats:
+        pairs = zip(curves, self._weights, strict=True)
         return np.concatenate([(each.computed - each.measured) * weight for each, weight in pairs])
+
+    def _slopes(self, shares: Floats) -> Floats:
+        """The derivatives of the residuals by the shares, shape (n, p)."""
+        values, offset = self._values(shares)
+        pairs = [pair for pair in zip(self._spans, values, strict=True) if pair[0].varied.targets]
+        moves = [move_of(self._loom.scene, span.varied, value) for span, value in pairs]
+        found = self._loom.derived(settings(self._spans, values), moves)
+        self.runs += 1
+        slopes = {
+            span.key: each.slope(lambda trace: self._weighed(compared(self._data, trace, offset)))
+            for (span, _value), each in zip(pairs, found.directions, strict=True)
+        }
+        curves = zip(compared(self._data, found.recording, offset), self._weights, strict=True)
+        drift = np.concatenate([each.drift * weight for each, weight in curves])
+        columns = [(span.high - span.low) * slopes.get(span.key, drift) for span in self._spans]
+        return np.stack(columns, axis=1)
 
     def _noise(self, ended: Any) -> Floats:
         """The standard error of each signal, from what remains of it; by the median with a robust loss.
@@ -113,8 +137,10 @@ class Search:
         there = self._residuals(own)
         scattered = qmc.Halton(len(own), seed=1).random(TRIED * len(own))
         ranked = []
-        changed = np.zeros(len(own), bool)
+        changed = np.any(self._slopes(own) != 0.0, axis=0) if self._derived else np.zeros(len(own), bool)
         for number, span in enumerate(self._spans):
+            if changed[number]:
+                continue
             for share in (own[number] + (PROBE if own[number] < 0.5 else -PROBE), 0.0, 0.5, 1.0):
                 moved = own.copy()
                 moved[number] = share
@@ -137,7 +163,7 @@ class Search:
         return least_squares(
             self._residuals,
             np.clip(start, 1e-9, 1.0 - 1e-9),
-            jac="3-point",
+            jac=self._slopes if self._derived else "3-point",
             bounds=(0.0, 1.0),
             xtol=PRECISE,
             ftol=PRECISE,

@@ -14,6 +14,8 @@
 #define EXPORT __attribute__((visibility("default")))
 #endif
 
+#include "tangents.h"
+
 enum { VALUES, STEP, SET_3, GET_3, STEP_3 };   /* what a call does: FMI 2.0, then FMI 3.0 */
 enum { OK = 0, WARNING = 1, DISCARD = 2 };     /* with the first two a run goes on */
 enum { REFUSED = 1000 };                       /* a value that does not fit is not handed over */

@@ -6,6 +6,15 @@
 
 #define DIFFERENTIATED (INITIALIZING | STEPPING | STEP_FAILED | TERMINATED | BROKEN | EVENTS | CONTINUOUS_TIME)
 
+/* The size of the component with dual numbers, where its variables are, and how it is started and stepped. */
+typedef struct {
+    size_t size;
+    const size_t *offsets;
+    const DualPart *part;
+} Dual;
+
+const Dual *loomfmu_dual(void);
+
 /* Its knowns and unknowns, by value reference. */
 typedef struct {
     const unsigned *unknowns;
@@ -202,4 +211,17 @@ static Status fmu_get_directional(Instance *instance, const char *function, Deri
         status = fmu_check_tangent(instance, found[i]);
     }
     return status;
+}
+
+/* ---- the component with dual numbers, for a master that carries tangents from step to step */
+
+#if defined(_WIN32)
+__declspec(dllexport)
+#else
+__attribute__((visibility("default")))
+#endif
+const Dual *loomfmu_dual(void)
+{
+    static const Dual table = {sizeof(DualComponent), dual_offsets, &dual_parts[0]};
+    return &table;
 }
