@@ -5,7 +5,7 @@ from math import pi
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
@@ -73,6 +73,8 @@ def solved(loads, step, speed, slope, viscous, dry, inertia, at_speed):
     st.floats(0.1, 80.0),
     st.booleans(),
 )
+# released within the step in which it stopped
+@example([0.0, 52.0, -111.0], 0.0, 0.0, 0.0, 34.0, False)
 def test_stops_and_releases_against_a_solver(loads, speed, slope, viscous, dry, at_speed):
     given = {"speed": speed, "torque_slope": slope, "viscous_friction": viscous, "dry_friction": dry}
     seen = run(loads, start_at_speed=at_speed, **given)

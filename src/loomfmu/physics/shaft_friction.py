@@ -12,7 +12,7 @@ from .driven_shaft import driven_motion
 from .numerics.brackets import at_root
 
 HALVINGS = 52  # of a part of the step: then its share is known to rounding
-MOST_PARTS = 4  # of a step: turning, held, turning on, and what rounding may leave
+MOST_PARTS = 3  # of a step: turning, held and turning on, and what rounding may leave
 
 
 def sense_of(velocity: float, free: float, friction: float) -> float:
@@ -116,6 +116,7 @@ def opposed_motion(
     for count in range(MOST_PARTS):
         left = 1.0 - low
         here = free - rise * low - slope * (now - velocity)
+        net = here - sense * friction
         if sense == 0.0:
             if rise == 0.0:
                 break
@@ -123,22 +124,22 @@ def opposed_motion(
             low = low + (friction - sense * here) / fabs(rise)
             if low >= 1.0:
                 break
-        else:
-            net = here - sense * friction
-            share = 1.0
-            if count < MOST_PARTS - 1:
-                share = stopping_share(now, net, rise * left, duration * left, inertia, slope, sense)
-            part = left * share
-            gained, more, by_second, _third = driven_motion(
-                now, net, rise * part, 0.0, duration * part, inertia, slope
-            )
-            low = low + part
-            mean = mean + part * (now + more)
-            second = second + part * ((1.0 - low) * (now + more) + part * by_second)
-            path = path + part * fabs(now + more)
-            now = now + gained
-            if share >= 1.0:
-                break
-            now = 0.0
-            sense = sense_of(now, free - rise * low + slope * velocity, friction)
+            left = 1.0 - low
+            net = 0.0  # to the bit: what rounding leaves would hold the shaft again
+        share = 1.0
+        if count < MOST_PARTS - 1:
+            share = stopping_share(now, net, rise * left, duration * left, inertia, slope, sense)
+        part = left * share
+        gained, more, by_second, _third = driven_motion(
+            now, net, rise * part, 0.0, duration * part, inertia, slope
+        )
+        low = low + part
+        mean = mean + part * (now + more)
+        second = second + part * ((1.0 - low) * (now + more) + part * by_second)
+        path = path + part * fabs(now + more)
+        now = now + gained
+        if share >= 1.0:
+            break
+        now = 0.0
+        sense = sense_of(now, free - rise * low + slope * velocity, friction)
     return now, mean, second, path
