@@ -169,14 +169,14 @@ def test_claims_have_a_row_where_one_has_its_worst_value_in_the_revolution(
 
 
 def test_a_revolution_without_worst_values_says_where_they_are(
-    yarn: Trace, written: Written, opened: Open
+    demo: Trace, written: Written, opened: Open
 ) -> None:
-    assert {each.revolution for each in yarn.verdicts} == {1}
-    page = opened(written(yarn))
+    assert {each.revolution for each in demo.verdicts} == {1, 3}
+    page = opened(written(demo))
     text = page.locator("#diagram-straight .elsewhere")
     assert text.is_hidden()
     page.evaluate("loomfmu.seek(1.5 * 2 * Math.PI)")
-    assert text.is_visible() and text.text_content() == "worst values in revolution 1"
+    assert text.is_visible() and text.text_content() == "worst values in revolutions 1 and 3"
 
 
 def test_a_report_without_claims_has_no_row_for_them(tmp_path: Path) -> None:

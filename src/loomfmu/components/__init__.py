@@ -53,6 +53,10 @@ class Components(MutableMapping[str, type[Component]]):
     def __len__(self) -> int:
         return len(self._classes)
 
+    def owns(self, component: type[Component] | None) -> bool:
+        """Return whether a class is one of these, without importing the others."""
+        return component is not None and self._classes.get(component.__name__) is component
+
 
 COMPONENTS = Components(MODULES)
 

@@ -138,10 +138,6 @@ class Dependence:
         ]
 
     @cached_property
-    def _ours(self) -> set[Any]:
-        return set(COMPONENTS.values())
-
-    @cached_property
     def unsettled(self) -> set[int]:
         """The claims, counted from 0, on what a longer run may change.
 
@@ -151,7 +147,7 @@ class Dependence:
             number
             for number, names in enumerate(self._upstream)
             if MOTION in self.kept[number]
-            or not self._ours.issuperset(self._components(names))
+            or not all(map(COMPONENTS.owns, self._components(names)))
             or len(movers_of(names, self._requested)) > 1
         }
 
@@ -171,7 +167,7 @@ class Dependence:
         found = []
         for names, kept in zip(self._upstream, self.kept, strict=True):
             components = self._components(names)
-            held = HELD if self._ours.issuperset(components) else CORNER
+            held = HELD if all(map(COMPONENTS.owns, components)) else CORNER
             method = MEMORY if MOTION in kept else held if EXTREMES in kept else PRESENT
             method = LAGGED if self._lagged else method
             method = BOUNCING if any(component and component.bounces for component in components) else method

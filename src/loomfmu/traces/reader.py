@@ -104,11 +104,17 @@ class Trace(Signals):
                 yield self._values(dataset, slice(start, min(start + rows, self.rows)))
 
     def _values(self, dataset: Any, rows: slice) -> NDArray[Any]:
+        self._check_length(dataset)
         try:
             values = np.asarray(dataset[rows])
         except (OSError, RuntimeError) as error:
             raise LoomfmuError(f"{self.given}: {dataset.name} cannot be read ({error})") from None
         return values.astype(bool) if dataset.attrs.get("dtype") == "bool" else values
+
+    def _check_length(self, dataset: Any) -> None:
+        if len(dataset) < self.rows:
+            signal = dataset.name.strip("/").replace("/", ".")
+            raise self._damaged(f"{signal} has {len(dataset)} samples, time has {self.rows}")
 
     def read(self, signal: str, rows: slice = slice(None)) -> NDArray[Any]:
         """The values of a signal, as `trace[signal]`, or some of them; this does not keep them in memory."""
@@ -142,11 +148,12 @@ class Trace(Signals):
         """Read all that the file says of the run and its signals. Raises LoomfmuError where it is damaged."""
         with self._file.opened() as file:
             attributes(file)
-            for signal in (*SHARED, *self):
-                attributes(self._item(file, signal))
+            for dataset in (self._item(file, signal) for signal in (*SHARED, *self)):
+                attributes(dataset)
+                self._check_length(dataset)
             for name in {signal.partition(".")[0] for signal in self}:
                 attributes(member(file, name))
-            _ = self.rows, self.time
+            _ = self.time
 
     @contextmanager
     def _dataset(self, signal: str) -> Iterator[Any]:
@@ -173,11 +180,8 @@ class Trace(Signals):
     def rows(self) -> int:
         """Number of samples when first read; of a run that was cut off, those that all signals have."""
         with self._file.opened() as file:
-            rows = {signal: len(self._item(file, signal)) for signal in (*SHARED, *self)}
-        fewest = min(rows, key=rows.__getitem__)
-        if self.judged and rows[fewest] < rows["time"]:
-            raise self._damaged(f"{fewest} has {rows[fewest]} samples, time has {rows['time']}")
-        return rows[fewest]
+            signals = ("time",) if self.judged else (*SHARED, *self)
+            return min(len(self._item(file, signal)) for signal in signals)
 
     @cached_property
     def time(self) -> Floats:

@@ -13,8 +13,6 @@ from ...units import UNITS, canonical
 
 ANGLE_INPUT, ANGLE = next(iter(FOLLOWED.items()))
 SPEED = "speed"  # the parameter, or the input, of what turns by itself
-_OTHERS = {name for name, each in COMPONENTS.items() if not issubclass(each, ShaftDriven)}
-_SHAFTS = {name for name, each in COMPONENTS.items() if SHAFT.of(*SHAFT.members) in each.terminals}
 
 
 class Mover(NamedTuple):
@@ -86,11 +84,16 @@ def _of(name: str, given: Mapping[str, str], followed: Container[str], run: Wire
         yield _turning(given[ANGLE_INPUT], run)
     elif turns_alone(name, run):
         yield Mover("", f"{name}.{SPEED}")
-    if fmu in _SHAFTS or own in followed:
+    if _is_shaft(fmu) or own in followed:
         yield _turning(own, run)
     for variable, source in given.items() if fmu not in COMPONENTS else ():
         if variable not in FOLLOWED and source in run and (turn := whole_turn(run.unit(source))):
-            yield Mover(source, turns=run.fmus.get(source.rpartition(".")[0], "") in _SHAFTS, turn=turn)
+            yield Mover(source, turns=_is_shaft(run.fmus.get(source.rpartition(".")[0], "")), turn=turn)
+
+
+def _is_shaft(fmu: str) -> bool:
+    """Return whether an FMU is a shaft of ours."""
+    return fmu in COMPONENTS and SHAFT.of(*SHAFT.members) in COMPONENTS[fmu].terminals
 
 
 def _turning(angle: str, run: Wired) -> Mover:
@@ -105,7 +108,9 @@ def whole_turn(unit: str) -> float:
 
 def turns_alone(name: str, run: Wired) -> bool:
     """Return whether an instance turns at its own speed: it cannot follow a shaft, or is set not to."""
-    if run.fmus.get(name, "") in _OTHERS or name not in run.own_speeds:
+    fmu = run.fmus.get(name, "")
+    follows = fmu not in COMPONENTS or issubclass(COMPONENTS[fmu], ShaftDriven)
+    if not follows or name not in run.own_speeds:
         return False
     try:
         run.parameter(f"{name}.{SPEED}")

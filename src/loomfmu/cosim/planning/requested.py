@@ -219,7 +219,7 @@ class Movements:
         instance, wires = self._instances[name], self._requested.wires
         component, ports = instance.fmu.component, instance.fmu.ports.values()
         given = [*instance.fmu.shaft_inputs[:1]]
-        if not given and component not in COMPONENTS.values():
+        if not given and not COMPONENTS.owns(component):
             given = [each.name for each in ports if each.causality == "input" and whole_turn(each.unit)]
         if given:
             taken = [wires[each] for each in (f"{name}.{variable}" for variable in given) if each in wires]

@@ -171,7 +171,7 @@ def _check_sources(known: Known, usual: Mapping[str, str], given: Container[str]
             continue
         unnumbered = not is_numbered(name) and "_#" in (declared[sink] or "")
         others = members(owner, known) if unnumbered else _renamed(name, owner, known)
-        ours = known[name].component in COMPONENTS.values()
+        ours = COMPONENTS.owns(known[name].component)
         if others or not (ours or of_terminal):
             missing = f"{name} has no number" if unnumbered else f"there is no instance {owner!r}"
             like = "" if unnumbered else suggestion(owner, known)
