@@ -13,7 +13,7 @@ SIMS = Path(__file__).parents[2] / "sims"
 STEP = 1e-4  # of a value, either way
 # of a derivative: a central difference is off by the square of its step times the curvature
 SMOOTH = 5e-6
-STARTING = 2e-4  # the same where an extreme is so flat that rounding moves the place at which it is found
+STARTING = 2e-4  # where the ramp moves the extreme in time: rounding moves the place at which it is found
 
 SAFE = "the loom runs below its safe speed"
 STOPS = "the stops withstand the carrier"

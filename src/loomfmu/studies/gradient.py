@@ -76,8 +76,8 @@ def gradient(
 
     The components' own equations are derived, states over all steps included. At a kink the derivative is
     one-sided: within a component that of the branch taken, in a claim that towards greater values. An extreme
-    that a component searches is derived at the place that it found: where the extreme is flat, rounding moves
-    that place, and derivatives far smaller than the others may be off by some 1e-4 of themselves.
+    that a component searches is derived at the place that it found. Rounding moves that place a little: where
+    the value moves the extreme in time, its derivative may be off by some 1e-4 of itself.
 
     Args:
         scene, set: as for `run`
