@@ -79,6 +79,7 @@ SETS = {
     "mapped": parameter("inertia", "Real", 'value="0.5"') + parameter("other", "Real", 'value="3"'),
 }
 CENTIMETRE = '<ssv:Units><ssc:Unit name="cm"><ssc:BaseUnit m="1" factor="0.01"/></ssc:Unit></ssv:Units>'
+DECANEWTON = '<ssc:Unit name="daN.m"><ssc:BaseUnit kg="1" m="2" s="-2" factor="10"/></ssc:Unit></ssv:Units>'
 
 
 def package(
@@ -176,6 +177,52 @@ def test_a_value_for_a_component_that_does_not_exist_is_named(
     assert ran(tmp_path).warnings == (
         "lft head.crank_length of the package is ignored: there is no such component",
     )
+
+
+@pytest.mark.parametrize(
+    ("given", "torque"),
+    [
+        (parameter("load", "Real", 'value="7"'), 7.0),
+        (parameter("load", "Real", 'value="0.7" unit="daN.m"'), 7.0),
+        (parameter("drive.free", "Real", 'value="5"'), 5.0),  # a connector of a system in the system
+        (parameter("drive.free", "Real", 'value="5"') + parameter("load", "Real", 'value="7"'), 7.0),
+    ],
+)
+def test_a_value_of_a_system_connector_reaches_what_is_wired_to_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, given: str, torque: float
+) -> None:
+    monkeypatch.setitem(SETS, "outer", SETS["outer"] + given)
+    monkeypatch.setitem(globals(), "CENTIMETRE", CENTIMETRE.replace("</ssv:Units>", DECANEWTON))
+    result = ran(tmp_path)
+    assert not result.warnings
+    assert result.scene.instances["drive_motor"].values["load_tau"] == pytest.approx(torque, rel=1e-15)
+
+
+def test_a_value_without_unit_has_that_of_its_system_connector(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    load = '<ssd:Connector name="load" kind="input"/>'
+    stated = load.replace("/>", '><ssc:Real unit="daN.m"/></ssd:Connector>')
+    units = DECANEWTON.replace("<ssc:Unit ", "<ssd:Units><ssc:Unit ").replace("</ssv:", "</ssd:")
+    structure = STRUCTURE.replace(load, stated).replace("<ssd:DefaultE", f"{units}<ssd:DefaultE")
+    monkeypatch.setitem(SETS, "outer", SETS["outer"] + parameter("load", "Real", 'value="0.7"'))
+    monkeypatch.setitem(globals(), "STRUCTURE", structure)
+    assert ran(tmp_path).scene.instances["drive_motor"].values["load_tau"] == pytest.approx(7.0, rel=1e-15)
+
+
+def test_a_value_of_a_system_connector_that_an_output_drives_is_left_out_and_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(SETS, "outer", SETS["outer"] + parameter("drive.phi", "Real", 'value="1"'))
+    assert ran(tmp_path).warnings == ("drive.phi of the package is ignored: no free input takes it",)
+
+
+def test_an_empty_element_of_a_connection_is_the_system_around_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    spelt = '<ssd:Connection startConnector="load"'
+    monkeypatch.setitem(globals(), "STRUCTURE", STRUCTURE.replace(spelt, spelt + ' startElement=""'))
+    assert len(ran(tmp_path).scene.wires) == 2
 
 
 def test_units_that_connectors_state_count_where_the_fmu_states_none(tmp_path: Path) -> None:

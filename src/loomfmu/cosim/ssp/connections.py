@@ -13,33 +13,56 @@ Node = tuple[tuple[str, ...], str]  # an element, as the names that lead to it, 
 Names = Mapping[tuple[str, ...], str]  # the instance that each component is, by the names that lead to it
 
 
-def wires_of(system: Element, instances: dict[str, Instance], names: Names) -> list[Wire]:
-    """The connections as wires from outputs to inputs.
+class Nets:
+    """Connectors that connections join, be it through connectors of systems.
 
     Start and end of a connection do not say which way values go: causalities do.
     """
+
+    def __init__(self, system: Element, instances: dict[str, Instance], names: Names):
+        self._instances, self._names = instances, names
+        self._nets = _joined(system)
+        self._causality = {node: _causality(node, instances, names) for node in self._nets}
+
+    @property
+    def wires(self) -> list[Wire]:
+        """Wires from outputs to inputs."""
+        wires: dict[Wire, None] = {}
+        for node, net in self._nets.items():
+            if self._causality[node] != "input":
+                continue
+            sources = self._outputs(net)
+            sink = f"{self._names[node[0]]}.{node[1]}"
+            if len(sources) > 1:
+                raise LoomfmuError(f"{sink} is connected to {len(sources)} outputs")
+            for path, connector in sources:  # none where it leads to a connector of the whole system
+                wires[wire(self._instances, sink, f"{self._names[path]}.{connector}")] = None
+        return list(wires)
+
+    def reached(self, node: Node) -> list[tuple[str, str]]:
+        """Return instances and variables that take the value of a system's connector.
+
+        None do where it is not connected, or where an output of an FMU gives the value.
+        """
+        net = self._nets.get(node, [])
+        takers = [each for each in net if self._causality[each] in ("input", "parameter")]
+        return [] if self._outputs(net) else [(self._names[path], variable) for path, variable in takers]
+
+    def _outputs(self, net: Collection[Node]) -> list[Node]:
+        return [each for each in net if self._causality[each] == "output"]
+
+
+def _joined(system: Element) -> dict[Node, list[Node]]:
+    """The net of each connector, in the order of the connections."""
     nets: dict[Node, list[Node]] = {}
-    order: dict[Node, None] = {}
     for one, other in _connections(system):
-        order |= {one: None, other: None}
         joined, added = sorted(
             (nets.setdefault(node, [node]) for node in (one, other)), key=len, reverse=True
         )
         if joined is not added:
             joined += added
             nets |= dict.fromkeys(added, joined)
-    causality = {node: _causality(node, instances, names) for node in order}
-    wires: dict[Wire, None] = {}
-    for node in order:
-        if causality[node] != "input":
-            continue
-        sources = [each for each in nets[node] if causality[each] == "output"]
-        sink = f"{names[node[0]]}.{node[1]}"
-        if len(sources) > 1:
-            raise LoomfmuError(f"{sink} is connected to {len(sources)} outputs")
-        for path, connector in sources:  # none where it leads to a connector of the whole system
-            wires[wire(instances, sink, f"{names[path]}.{connector}")] = None
-    return list(wires)
+    return nets
 
 
 def _causality(node: Node, instances: dict[str, Instance], names: Names) -> str:
@@ -60,7 +83,7 @@ def _connections(system: Element, path: tuple[str, ...] = ()) -> Iterator[tuple[
     for connection in system.iterfind(f"{full('ssd:Connections')}/{full('ssd:Connection')}"):
         ends = []
         for which in ("start", "end"):
-            owner = connection.get(f"{which}Element")
+            owner = connection.get(f"{which}Element") or None  # OMSimulator has an empty name for none
             node = (path if owner is None else (*path, owner), required(connection, f"{which}Connector"))
             if owner is not None:
                 _check_known(node, "element", owner, elements)

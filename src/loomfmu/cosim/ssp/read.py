@@ -22,7 +22,7 @@ from ..scenes.instance_tables import overridden, override, prevailing, unit_of
 from ..scenes.instances import Instance, check_name
 from ..scenes.scene import Scene, assemble
 from ..scenes.settings import DEEPEST, TIMES, toml
-from .connections import Names, wires_of
+from .connections import Names, Nets, Node
 from .package import Package
 from .values import Given, apply, bound
 from .xml import FMU, OSP, OURS, SSD_FILE, full, read_units, real, required
@@ -72,12 +72,11 @@ class _Reader:
         names = {each.path: name for name, each in found.items()}
         text = None if annotation is None else toml(annotation.text or "")
         stated = _stated(found, text or {}, overrides)
-        values = self._values(system, found, names)
-        instances = {
-            name: self._instance(name, each.element, stated[name], values[name], ours=text is not None)
-            for name, each in found.items()
-        }
-        wires = wires_of(system, instances, names)
+        instances = {name: self._instance(name, each.element, stated[name]) for name, each in found.items()}
+        nets = Nets(system, instances, names)
+        for name, values in self._values(system, found, names, nets).items():
+            self._set(instances[name], values, ours=text is not None)
+        wires = nets.wires
         tables = self._foreign_tables() if annotation is None else _our_tables(text or {}, annotation)
         if text is not None:
             for instance in instances.values():
@@ -108,28 +107,36 @@ class _Reader:
 
     # ---- instances
 
-    def _values(self, system: Element, found: Mapping[str, _Found], names: Names) -> dict[str, list[Given]]:
+    def _values(
+        self, system: Element, found: Mapping[str, _Found], names: Names, nets: Nets
+    ) -> dict[str, list[Given]]:
         """The values of each instance in the order they are set: those of outer systems last."""
         values = {name: list(bound(each.element, self.package.root)) for name, each in found.items()}
         dotted = {".".join(path): name for path, name in names.items()}
         most = max(name.count(".") for name in dotted) + 1
+        connectors = _system_connectors(system)
         for path, element in reversed(list(_systems(system))):  # the outermost last: it prevails
             for given in bound(element, self.package.root):
                 parts = (*path, *given.name.split(".", most))
                 heads = ((".".join(parts[:end]), end) for end in range(len(path) + 1, len(parts)))
                 name, end = next(((dotted[head], end) for head, end in heads if head in dotted), ("", 0))
+                whole = ".".join(parts)
+                node = next((each for each in _nodes(whole) if each in connectors), None)
+                takers = nets.reached(node) if node else []
                 if name:
                     values[name].append(replace(given, name=".".join(parts[end:])))
-                else:
-                    self.notes.append(
-                        f"{'.'.join(parts)} of the package is ignored: there is no such component"
-                    )
+                elif node is None:
+                    self.notes.append(f"{whole} of the package is ignored: there is no such component")
+                elif not takers:
+                    self.notes.append(f"{whole} of the package is ignored: no free input takes it")
+                elif not given.unit and (unit := connectors[node]):
+                    given = replace(given, unit=unit, definition=self.units.get(unit))
+                for taker, variable in [] if name else takers:
+                    values[taker].append(replace(given, name=variable))
         return values
 
-    def _instance(
-        self, name: str, element: Element, stated: Any, values: Iterable[Given], ours: bool
-    ) -> Instance:
-        """An instance with its values; `stated` are units, `ours` says whether we made the package."""
+    def _instance(self, name: str, element: Element, stated: Any) -> Instance:
+        """An instance; `stated` are units."""
         check_name(name)
         source = required(element, "source")
         if element.get("type", FMU) != FMU:
@@ -138,19 +145,20 @@ class _Reader:
         fmu = self._with_units(loaded.with_units(stated, name), element, name)
         if name == "shaft" and "angle" in fmu.ports:
             fmu = fmu.as_shaft()
-        instance = Instance(name, fmu)
+        return Instance(name, fmu)
+
+    def _set(self, instance: Instance, values: Iterable[Given], ours: bool) -> None:
+        """Give an instance its values; `ours` says whether we made the package."""
         self.notes += filter(None, [apply(instance, given) for given in values])
-        if fmu.ours and not ours:  # whatever was meant for another master: ours works in dependency order
+        if instance.fmu.ours and not ours:  # what was meant for another master: ours goes by dependencies
             instance.values.pop(AT_STEP_END, None)
         instance.settle()
-        return instance
 
     def _with_units(self, fmu: Fmu, element: Element, name: str) -> Fmu:
         """The units that connectors state, where the FMU itself states none."""
         ports = dict(fmu.ports)
         for connector in element.iterfind(f"{full('ssd:Connectors')}/{full('ssd:Connector')}"):
-            real = connector.find(full("ssc:Real"))
-            unit = real.get("unit", "") if real is not None else ""
+            unit = _unit(connector)
             port = ports.get(fmu.name_of(required(connector, "name")))
             if unit and port is not None and port.kind == "Real":
                 where = f"{name}.{port.name}"
@@ -196,6 +204,27 @@ def _systems(system: Element, path: tuple[str, ...] = ()) -> Iterator[tuple[tupl
     yield path, system
     for element in system.iterfind(f"{full('ssd:Elements')}/{full('ssd:System')}"):
         yield from _systems(element, (*path, required(element, "name")))
+
+
+def _unit(connector: Element) -> str:
+    """The unit that a connector states, or an empty text."""
+    real = connector.find(full("ssc:Real"))
+    return "" if real is None else real.get("unit", "")
+
+
+def _system_connectors(system: Element) -> dict[Node, str]:
+    """The connectors of a system and of the systems in it, with the units that they state."""
+    return {
+        (path, required(each, "name")): _unit(each)
+        for path, element in _systems(system)
+        for each in element.iterfind(f"{full('ssd:Connectors')}/{full('ssd:Connector')}")
+    }
+
+
+def _nodes(name: str) -> Iterator[Node]:
+    """The connectors of systems that a dotted name may mean."""
+    parts = name.split(".")
+    return ((tuple(parts[:end]), ".".join(parts[end:])) for end in range(len(parts)))
 
 
 def _components(system: Element, path: tuple[str, ...] = ()) -> Iterator[_Found]:
