@@ -132,7 +132,7 @@ def gradient(
 
 
 def _parameter(loom: Prepared, key: str) -> Varied:
-    """What a key sets. Raises LoomfmuError where that is no real number."""
+    """Return what a key sets. Raises LoomfmuError where that is no real number."""
     found = varied(loom.scene, key)
     if found.kind != "Real" or found.needs_scene:
         raise LoomfmuError(f"by {key}: it is not a real number of a component, so it has no derivative")
