@@ -68,6 +68,8 @@ def test_a_folded_dataset_has_whole_revolutions(result: loomfmu.Result) -> None:
 
 
 def test_a_table_and_a_dataset_have_degrees(result: loomfmu.Result) -> None:
+    with pytest.raises(LoomfmuError, match=r"\['belt.margin'\] is not the name of a signal"):
+        result.trace.to_pandas(["belt.margin"])
     table = result.trace.to_pandas("belt.at_risk")
     assert list(table.columns) == ["belt.at_risk", "shaft_angle", "degrees"] and table.index.name == "time"
     np.testing.assert_array_equal(table["degrees"], np.degrees(result.trace.shaft_angle))

@@ -18,7 +18,11 @@ STARTING = 2e-4  # where the ramp moves the extreme in time: rounding moves the 
 SAFE = "the loom runs below its safe speed"
 STOPS = "the stops withstand the carrier"
 SCENES = {
-    "belt": ("wl680_3600", [SAFE, "belt.lowest_margin"], {"shaft.speed": 63.0, "belt.guide_clearance": 4e-4}),
+    "belt": (
+        "wl680_3600",
+        [SAFE, "belt.lowest_margin"],
+        {"shaft.speed": 63.0, "belt.guide_clearance": 4e-4, "belt.yarn_tension": 3.0},
+    ),
     "damper": ("wl680_3600", [STOPS], {"shaft.speed": 62.8, "damper_1.spring_stiffness": 11e3}),
     "carrier on springs": (
         "damper",
@@ -77,6 +81,11 @@ def test_derivatives_are_those_that_differences_of_runs_approach(case):
             scale = [1e-12 * abs(number) / step for number in found.numbers]
             for got, wanted, rounding in zip(found.si[:, column], differences, scale, strict=True):
                 assert got == pytest.approx(wanted, rel=near, abs=rounding)
+
+
+def test_an_extreme_that_is_held_has_a_derivative_though_its_moved_samples_rise_and_fall():
+    found = gradient(SIMS / "wl680_3600.toml", of=["belt.lowest_margin"], by=["belt.yarn_tension"])
+    assert found.si[0, 0] == pytest.approx(0.0, abs=1e-9)  # the head turns there; after that no weft pushes
 
 
 def test_it_shows_a_table_with_the_units_that_people_read():

@@ -191,6 +191,10 @@ class Signals(ABC):
         need("to_xarray", "xarray")
         from .datasets import attributes, dataset
 
+        for name in signals:
+            if not isinstance(name, str):
+                raise LoomfmuError(f"{shown(name)} is not the name of a signal such as 'belt.margin'")
+
         columns = {
             name: (self.read(name), attributes(name, self.unit(name), self.description(name)))
             for name in signals or tuple(self)

@@ -87,7 +87,8 @@ class Held(Measure, kind=False):
     def of(self, trace: Signals) -> tuple[float, float]:
         values = np.asarray(trace[self.signal], dtype=float)
         steps = np.diff(values)
-        if not (np.all(steps >= 0.0) or np.all(steps <= 0.0)):
+        declared = trace.beside(self.signal, "lowest") == self.signal  # its component knows, samples do not
+        if not (declared or np.all(steps >= 0.0) or np.all(steps <= 0.0)):
             raise LoomfmuError(
                 f"{self.signal} rises and falls in the run, so that its final value says little; write"
                 f" {FORMS.format(self.signal)}"
