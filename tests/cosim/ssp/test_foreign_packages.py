@@ -13,6 +13,7 @@ from loomfmu.cosim.importing import fmus
 from loomfmu.cosim.run import Result, run
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.ssp import export as ssp
+from loomfmu.cosim.ssp.package import Package
 from loomfmu.cosim.ssp.xml import NAMESPACES
 
 DRIVE = """
@@ -346,6 +347,16 @@ def test_what_cannot_be_run_is_told_in_one_line(tmp_path: Path, said: str) -> No
         ran(tmp_path, **MISTAKES[said])
     text = str(raised.value)
     assert text.startswith(f"{tmp_path}/elsewhere.ssp: ") and said in text and "\n" not in text
+
+
+def test_one_fmu_under_two_names_is_unpacked_twice(tmp_path: Path) -> None:
+    path, found = tmp_path / "two.ssp", []
+    with zipfile.ZipFile(path, "w") as archive:
+        for name in ("one.fmu", "other.fmu"):
+            archive.writestr(name, b"the same")
+    with Package(path) as opened:
+        found = [opened.unpacked(name) for name in ("one.fmu", "other.fmu")]
+    assert all(each.read_bytes() == b"the same" for each in found)  # another run may use the first
 
 
 def test_nothing_is_written_outside_the_cache(tmp_path: Path) -> None:

@@ -57,7 +57,9 @@ class Package:
         name = self.member(reference)
         with _reading(f"{name}: cannot be unpacked"):
             content = self._archive.read(name)
-        key, file = hashlib.sha256(content).hexdigest(), posixpath.basename(name)
+        file = posixpath.basename(name)
+        # an entry has exactly its files: under the content alone, two names would take it from each other
+        key = hashlib.sha256(file.encode() + b"/" + content).hexdigest()
         return folder(PACKAGES, key, [file], lambda _: content) / file
 
     def member(self, reference: str) -> str:
