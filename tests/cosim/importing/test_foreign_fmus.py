@@ -1,7 +1,7 @@
 """Third-party FMUs, FMI 2.0 and 3.0, wired to ours: a motor in C with an exact solution."""
 
 from collections.abc import Iterator
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from dataclasses import replace
 from pathlib import Path
 
@@ -39,6 +39,22 @@ def test_a_motor_of_fmi_2_drives_the_weft(place: Path, tmp_path: Path, step: str
         assert weft.initialize(0.0) == 0
         assert weft.travel == pytest.approx(trace["weft.travel"][row], rel=1e-13, abs=1e-13)
         assert weft.acceleration == pytest.approx(trace["weft.acceleration"][row], rel=1e-12, abs=1e-10)
+
+
+@pytest.mark.parametrize("isolated", ["true", "false"])
+@pytest.mark.parametrize(
+    ("tolerance", "said"),
+    [("1e-4", ""), ("0.5", "motor: .*fmi2SetupExperiment"), ("0", "tolerance = 0 must be a finite number")],
+)
+def test_the_tolerance_that_an_fmu_states_is_passed_on_to_it(
+    place: Path, tmp_path: Path, tolerance: str, said: str, isolated: str
+) -> None:
+    stated = f'<DefaultExperiment tolerance="{tolerance}"/><ModelVariables>'
+    text = description2().replace("<ModelVariables>", stated)
+    packed(place / "Strict.fmu", text, library("fmi2.c"), "Motor")  # it refuses tolerances above 0.1
+    expected = pytest.raises(LoomfmuError, match=said) if said else nullcontext()
+    with expected:
+        ran(place, MOTOR.replace("Motor.fmu", "Strict.fmu") + f"isolated = {isolated}\n{WEFT}", tmp_path)
 
 
 def test_a_boolean_input_of_fmi_3_is_driven(place: Path, tmp_path: Path) -> None:

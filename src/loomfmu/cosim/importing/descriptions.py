@@ -93,6 +93,17 @@ def unsupported_outputs(description: Any) -> tuple[str, ...]:
     return tuple(v.name for v in outputs if v.type not in KINDS or v.dimensions)
 
 
+def tolerance_of(description: Any) -> float | None:
+    """Return the relative tolerance of the default experiment. Raises ValueError for one that cannot be."""
+    experiment = description.defaultExperiment
+    if experiment is None or experiment.tolerance is None:
+        return None
+    tolerance = float(experiment.tolerance)
+    if not 0.0 < tolerance < math.inf:
+        raise ValueError(f"DefaultExperiment tolerance = {tolerance:g} must be a finite number above 0")
+    return tolerance
+
+
 def _check(variables: Iterable[Any]) -> None:
     """Refuse what would let a value go to another variable. Raises ValueError."""
     names: set[str] = set()

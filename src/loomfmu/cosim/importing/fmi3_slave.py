@@ -80,8 +80,10 @@ class Fmi3Slave(Slave):
             port = self.fmu.ports[name]
             function = FUNCTIONS.get(port.base_type, port.base_type)
             self._do(getattr(self._slave, f"set{function}"), [port.reference], [value])
-        no, zero, stop = ctypes.c_bool(False), ctypes.c_double(), ctypes.c_double(stop_time)
-        self._do(self._call, "EnterInitializationMode", no, zero, zero, ctypes.c_bool(True), stop)
+        defined, tolerance = self._tolerance()
+        zero, stop = ctypes.c_double(), ctypes.c_double(stop_time)
+        given = (ctypes.c_bool(defined.value), tolerance, zero, ctypes.c_bool(True), stop)
+        self._do(self._call, "EnterInitializationMode", *given)
 
     def _ended(self) -> float | None:
         return float(self._flags.reached) if self._flags.terminate else None

@@ -32,7 +32,7 @@ from .built import (
     is_here,
     is_our_build,
 )
-from .descriptions import declared_ports, is_ours, ports_of, unsupported_outputs
+from .descriptions import declared_ports, is_ours, ports_of, tolerance_of, unsupported_outputs
 from .facts import Facts, facts_of
 from .ports import Port, Value
 
@@ -63,7 +63,8 @@ class Fmu:
     these is made of, which declares what others must know; None if that is not known. `single` is one that a
     process may have one instance of. `flavour` is that of one which is built when its file is first needed,
     and empty for one that was given as a file. `fixed_step` is one that takes equal steps only, `needs_tool`
-    one that says it needs the tool that made it; `unsupported` are outputs without a port.
+    one that says it needs the tool that made it; `unsupported` are outputs without a port. `tolerance` is the
+    relative one that it states for its own solver, None if it states none.
     """
 
     name: str
@@ -75,6 +76,7 @@ class Fmu:
     fixed_step: bool = False
     needs_tool: bool = False
     unsupported: tuple[str, ...] = ()
+    tolerance: float | None = None
     flavour: str = ""
     component: type[Component] | None = field(default=None, repr=False)
     given: Unpacked | None = field(default=None, repr=False)
@@ -298,6 +300,7 @@ def _read(path: Path, sha256: str, directory: Path) -> Fmu:
         trusted = ours and is_our_build(path, description.modelName, fmi)
         component = COMPONENTS[description.modelName] if trusted else None
         ports = ports_of(description, component)
+        tolerance = tolerance_of(description)
     except Exception as error:  # fmpy raises its own kinds for a description that is none
         raise LoomfmuError(f"{path}: its modelDescription.xml cannot be read ({_reason(error)})") from None
     _check_runnable(path, description)
@@ -313,6 +316,7 @@ def _read(path: Path, sha256: str, directory: Path) -> Fmu:
         needs_tool=kind.needsExecutionTool,
         component=component,
         unsupported=unsupported_outputs(description),
+        tolerance=tolerance,
         given=Unpacked(
             path, sha256, directory, description.guid, kind.modelIdentifier, description.version or ""
         ),

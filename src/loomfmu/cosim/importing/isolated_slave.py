@@ -122,10 +122,18 @@ class IsolatedSlave(Slave):
     def start(self, values: dict[str, Value], stop_time: float) -> None:
         """Instantiate the FMU, set the values and enter the initialization."""
         fmu = self.fmu
-        facts = {
-            name: getattr(fmu, name)
-            for name in ("ports", "fmi", "trusted", "needs_tool", "path", "directory", "guid", "identifier")
-        }
+        known = (
+            "ports",
+            "fmi",
+            "trusted",
+            "needs_tool",
+            "tolerance",
+            "path",
+            "directory",
+            "guid",
+            "identifier",
+        )
+        facts = {name: getattr(fmu, name) for name in known}
         self.forget_messages()
         self._forget_calls()
         starting = replace(self.limits, step=max(START, self.limits.step))

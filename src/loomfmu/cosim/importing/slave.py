@@ -184,12 +184,17 @@ class Slave(Logged):
         """Set the experiment up and the values, and enter the initialization."""
         self.forget_messages()
         stop = ctypes.c_double(stop_time)
-        self._do(self._call, "SetupExperiment", fmi2False, _ZERO, _ZERO, fmi2True, stop)
+        self._do(self._call, "SetupExperiment", *self._tolerance(), _ZERO, fmi2True, stop)
         self.started = True
         for setting in self._settings_of(tuple(values)):
             setting.values[:] = [values[name] for name in setting.names]
             self._do(self._call, setting.function, setting.references, setting.size, setting.values)
         self._do(self._call, "EnterInitializationMode")
+
+    def _tolerance(self) -> tuple[ctypes.c_int, ctypes.c_double]:
+        """Return if a tolerance is defined, and the one of the FMU's default experiment."""
+        stated = self.fmu.tolerance
+        return ctypes.c_int(stated is not None), ctypes.c_double(stated or 0.0)
 
     def finish_initialization(self) -> None:
         """Leave the initialization; what the FMU complains of, or complained of before, is raised."""
