@@ -97,6 +97,14 @@ def _damper_in(frame: str, run: Wired) -> str:
     return next(iter(found), "")
 
 
+def height_of(frame: str, lifted_by: str, run: Wired) -> str:
+    """The signal of the height of a frame's warp. Raises LoomfmuError where a damper's carrier lifts it."""
+    lift = lift_of(frame, lifted_by, run)
+    if lift != f"{frame}.lift":
+        raise LoomfmuError(f"{lift} depends on the run so far, not on the shaft angle alone")
+    return f"{frame}.warp_height"
+
+
 def lifts(frame: str, lifted_by: str, run: Wired) -> list[str]:
     """The lift that the warp has, and, if the carrier gives it, that of the frame."""
     return list(dict.fromkeys((lift_of(frame, lifted_by, run), f"{frame}.lift")))

@@ -1,0 +1,83 @@
+"""Conditions: a claim in terms of the shaft angle alone, without a run, for claims that can be stated so.
+
+A run shows a claim at its samples and between them; a condition says what must be so at every angle.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ...components import COMPONENTS
+from ...declaring.variables import variables_of
+from ...errors import LoomfmuError
+from .arguments import Window
+from .movers import Wired
+
+
+@dataclass(frozen=True)
+class Linear:
+    """A sum of shares of signals and parameters, and a constant: what must not be negative, in SI."""
+
+    terms: tuple[tuple[float, str], ...]
+    constant: float = 0.0
+
+
+@dataclass(frozen=True)
+class Always:
+    """At all angles, or those of a window, or at some angles of every revolution, one of these is not negative."""
+
+    any_of: tuple[Linear, ...]
+    window: Window | None = None
+    angles: tuple[float, ...] = ()
+
+    @property
+    def forms(self) -> tuple[Linear, ...]:
+        """Return all that it is about."""
+        return self.any_of
+
+
+@dataclass(frozen=True)
+class Spans:
+    """Whenever this stops being negative, it stays so for an angle; an end of the run may cut that off [rad]."""
+
+    inside: Linear
+    at_least: float
+
+    @property
+    def forms(self) -> tuple[Linear, ...]:
+        """Return all that it is about."""
+        return (self.inside,)
+
+
+Condition = Always | Spans
+
+
+def above(signal: str, bound: float | str, share: float = 1.0, window: Window | None = None) -> Always:
+    """Return the condition that a share of a signal is at least as large as this share of a bound."""
+    if isinstance(bound, str):
+        return Always((Linear(((share, signal), (-share, bound))),), window)
+    return Always((Linear(((share, signal),), -share * bound),), window)
+
+
+def present(signal: str, run: Wired, sense: int) -> str:
+    """Return the signal of which this one holds the lowest values, or the highest ones with -1; or itself.
+
+    Raises LoomfmuError for another signal with a memory, and for a truth value.
+    """
+    name, _, variable = signal.rpartition(".")
+    kind = run.fmus.get(name, "")
+    declared = {each.name: each for each in variables_of(COMPONENTS[kind])} if kind in COMPONENTS else {}
+    if variable not in declared:
+        raise LoomfmuError(f"the equations of {signal} are not known")
+    found = declared[variable]
+    base = found.lowest_of if sense > 0 else found.highest_of
+    if base and found.type is float:
+        return f"{name}.{base}"
+    if found.one_way and found.causality == "output" and found.variability != "fixed" and found.depends != ():
+        raise LoomfmuError(f"{signal} depends on the run so far")
+    return signal
+
+
+def names_of(conditions: Sequence[Condition]) -> list[str]:
+    """Return the signals and parameters that conditions are about."""
+    forms = [form for condition in conditions for form in condition.forms]
+    return list(dict.fromkeys(name for form in forms for _share, name in form.terms))

@@ -1,0 +1,178 @@
+"""A scene as a function of the shaft angle and some parameters, over boxes of these: its mechanisms in turn.
+
+Each mechanism without a memory is placed at the shaft angle, as at the start of a run. What it gives is
+enclosed twice: by its equations over the whole box, and from the middle of the box by its slopes.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...components import COMPONENTS
+from ...components.shaft_driven import FOLLOWING, ShaftDriven
+from ...cosim.planning.pruning import prune
+from ...cosim.scenes.graph import step_order
+from ...cosim.scenes.instances import Instance
+from ...cosim.scenes.scene import Scene
+from ...declaring.variables import MOTION, TIME, Component, variables_of
+from ...errors import LoomfmuError
+from .enclosed import Enclosed
+from .spans import Floats, both, constant, minus, plus, times
+
+SHAFT, START = "shaft", "start_angle"
+
+
+@dataclass(frozen=True)
+class Number:
+    """A number over boxes: its values (boxes, 2), its slopes by each side of the box (boxes, sides, 2), and
+    its value in the middle of the box (boxes, 2)."""
+
+    values: Floats
+    slopes: Floats
+    middle: Floats
+
+    @classmethod
+    def of(cls, value: float, boxes: Floats) -> "Number":
+        """Return a number that is the same everywhere."""
+        rows, sides, _two = boxes.shape
+        return cls(constant(value, (rows,)), np.zeros((rows, sides, 2)), constant(value, (rows,)))
+
+    @classmethod
+    def side(cls, place: int, boxes: Floats) -> "Number":
+        """Return a side of the boxes."""
+        slopes = np.zeros_like(boxes)
+        slopes[:, place] = 1.0
+        return cls(boxes[:, place], slopes, np.repeat(middles(boxes)[:, place, None], 2, axis=-1))
+
+    @property
+    def bounds(self) -> Floats:
+        """Return the values and the slopes in one array, (boxes, 1 + sides, 2)."""
+        return np.concatenate([self.values[:, None], self.slopes], axis=1)
+
+    def plus(self, other: "Number", share: float = 1.0) -> "Number":
+        """Return this number and a share of another one."""
+        factor = constant(share)
+        return Number(
+            plus(self.values, times(other.values, factor)),
+            plus(self.slopes, times(other.slopes, factor)),
+            plus(self.middle, times(other.middle, factor)),
+        )
+
+    def narrowed(self, boxes: Floats) -> "Number":
+        """Return this number, its values narrowed to what its slopes leave from the middle of each box."""
+        reach = minus(boxes, np.repeat(middles(boxes)[..., None], 2, axis=-1))
+        far = times(self.slopes, reach)
+        values = self.middle
+        for side in range(boxes.shape[1]):
+            values = plus(values, far[:, side])
+        return Number(both(self.values, values), self.slopes, self.middle)
+
+
+def middles(boxes: Floats) -> Floats:
+    """Return a point within each box, about its middle."""
+    return np.clip(boxes.mean(axis=-1), boxes[..., 0], boxes[..., 1])
+
+
+@dataclass(frozen=True)
+class _Placed:
+    """A mechanism: what it is given, each by its variable, and what it is asked for."""
+
+    name: str
+    enclosed: Enclosed
+    values: dict[str, float]
+    sides: dict[str, int]
+    wires: dict[str, str]
+
+
+class Chain:
+    """The mechanisms that give some signals. `sides` are the parameters that vary, by instance and variable.
+
+    Raises LoomfmuError for what has a memory, a loop, a table of inputs or a shaft of changing speed.
+    """
+
+    def __init__(self, scene: Scene, signals: Sequence[str], sides: Mapping[tuple[str, str], int]):
+        needed = prune(scene, [each for each in signals if _is_output(scene, each)], keep_shafts=True)
+        self._scene, self._sides = scene, {**sides, (SHAFT, START): 0}
+        order, lagged = step_order(needed.scene.instances, needed.scene.wires)
+        if lagged:
+            raise LoomfmuError(f"{lagged[0]} closes a loop")
+        if needed.scene.drives:
+            drive = needed.scene.drives[0]
+            raise LoomfmuError(f"{drive.instance}.{drive.variable} follows a table of inputs")
+        read = {wire.source for wire in needed.scene.wires} | {tuple(each.split(".", 1)) for each in signals}
+        self._placed = [
+            self._place(
+                needed.scene.instances[name], needed.scene, {each[1] for each in read if each[0] == name}
+            )
+            for name in order
+        ]
+
+    def _place(self, instance: Instance, scene: Scene, read: set[str]) -> _Placed:
+        component = _checked(instance)
+        variables = {each.name: each for each in variables_of(component)}
+        wires = {w.sink[1]: ".".join(w.source) for w in scene.wires if w.sink[0] == instance.name}
+        if issubclass(component, ShaftDriven) and not instance.start(FOLLOWING):
+            raise LoomfmuError(f"{instance.name} does not follow the shaft")
+        values = {
+            name: float(instance.start(name))
+            for name, each in variables.items()
+            if each.settable and name not in wires and instance.start(name) != each.start
+        }
+        sides = {name: side for (owner, name), side in self._sides.items() if owner == instance.name}
+        if instance.name == SHAFT:
+            values[TIME] = 0.0  # it turns by its start angle instead
+        wanted = tuple(sorted(each for each in read if variables[each].causality == "output"))
+        return _Placed(
+            instance.name,
+            Enclosed(component, wanted),
+            {name: value for name, value in values.items() if name not in sides},
+            sides,
+            wires,
+        )
+
+    def numbers(self, boxes: Floats) -> dict[str, Number]:
+        """Return all numbers of the chain over boxes, shape (boxes, sides, 2), by signal; side 0 is the angle."""
+        found: dict[str, Number] = {}
+        for placed in self._placed:
+            given = {name: Number.side(place, boxes) for name, place in placed.sides.items()}
+            given |= {name: found[source] for name, source in placed.wires.items()}
+            wide = {name: each.bounds for name, each in given.items()}
+            bounds = placed.enclosed.bounds(placed.values, wide)
+            points = {name: each.middle[:, None] for name, each in given.items()}
+            middle = placed.enclosed.bounds(placed.values, points)
+            for name, each in bounds.items():
+                number = Number(each[:, 0], each[:, 1:], middle[name][:, 0])
+                found[f"{placed.name}.{name}"] = number.narrowed(boxes)
+        return found
+
+    def number(self, name: str, found: Mapping[str, Number], boxes: Floats) -> Number:
+        """Return a signal, or a parameter, over boxes."""
+        if name in found:
+            return found[name]
+        instance, _, variable = name.partition(".")
+        if (instance, variable) in self._sides:
+            return Number.side(self._sides[instance, variable], boxes)
+        return Number.of(float(self._scene.instances[instance].start(variable) or 0.0), boxes)
+
+
+def _is_output(scene: Scene, name: str) -> bool:
+    instance, _, variable = name.partition(".")
+    return scene.instances[instance].fmu.ports[variable].causality == "output"
+
+
+def _checked(instance: Instance) -> type[Component]:
+    """The component of an instance. Raises LoomfmuError where its outputs depend on more than the angle."""
+    component = instance.fmu.component
+    if component is None or not instance.fmu.built:
+        raise LoomfmuError(f"{instance.name} is another tool's FMU, whose equations are not known")
+    if not COMPONENTS.owns(component):
+        raise LoomfmuError(
+            f"{instance.name} is a mechanism of your own, which is not known to have no memory"
+        )
+    if component.keeps == MOTION:
+        raise LoomfmuError(f"{instance.name} moves by its own inertia, so that its past matters")
+    for name in component.unsteady:
+        if instance.start(name):
+            raise LoomfmuError(f"the speed of {instance.name} changes: {name} is not 0")
+    return component
