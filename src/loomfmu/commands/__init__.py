@@ -78,6 +78,7 @@ def parser() -> argparse.ArgumentParser:
         studies.add_sweep,
         studies.add_limit,
         studies.add_tolerances,
+        studies.add_prove,
         studies.add_optimize,
         studies.add_fit,
         package.add_list,

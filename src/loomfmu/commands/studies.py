@@ -7,6 +7,7 @@ from typing import Any
 
 from ..display.printed import say, warn
 from ..errors import LoomfmuError
+from ..extras import need
 from ..files import check_target
 from .shared import add_force, add_place, add_scene, add_set, add_vary, ending, pairs
 
@@ -147,6 +148,67 @@ def tolerances(options: argparse.Namespace) -> int:
     found = find(options.scene, vary=options.vary, set=pairs(options.overrides), progress=True)
     drawn = {picture: lambda path: pictures.save(draw(found), path, found.title, inputs, options.force)}
     return _reported(found, show, drawn)
+
+
+def add_prove(commands: Any) -> None:
+    """Add `prove` and its arguments."""
+    command = commands.add_parser(
+        "prove",
+        help="prove claims for all shaft angles and all values within ranges",
+        epilog="Exit status: 0 all claims are proven, or confirmed; 1 one is refuted, left open or cannot be"
+        " proven; 2 bad input.",
+    )
+    command.add_argument("scene", nargs="?", metavar="SCENE", help="the scene (.toml or .ssp)")
+    command.add_argument(
+        "--over",
+        action="append",
+        default=[],
+        metavar="INSTANCE.VARIABLE=LOW..HIGH",
+        help="a parameter and its range, such as shaft.speed=300rpm..640rpm (repeatable)",
+    )
+    command.add_argument("--claim", action="append", metavar="NAME", help="only this claim (repeatable)")
+    command.add_argument(
+        "--boxes",
+        type=int,
+        metavar="N",
+        help="boxes that are tried for a claim before it is left open (200000)",
+    )
+    add_set(command)
+    command.add_argument(
+        "--certificate", metavar="FILE.json", help="also write what others need to confirm it"
+    )
+    command.add_argument("--check", metavar="FILE.json", help="confirm a certificate instead of proving")
+    add_force(command, "the certificate even if loomfmu did not write it")
+    command.set_defaults(action=prove)
+
+
+def prove(options: argparse.Namespace) -> int:
+    """Prove claims, or confirm a certificate."""
+    if (options.scene is None) == (options.check is None):
+        raise LoomfmuError("prove takes either a SCENE or --check FILE.json")
+    if options.check is not None:
+        need("confirming a certificate", "proof")
+        from ..studies.proving.check import check
+
+        say(*(f"confirmed: {told}" for told in check(options.check)))
+        return 0
+    from ..studies.proving import certificate
+    from ..studies.proving.proofs_shown import show
+    from ..studies.proving.prove import MOST
+    from ..studies.proving.prove import prove as find
+
+    inputs, output = [Path(options.scene)], Path(options.certificate) if options.certificate else None
+    if output is not None:
+        check_target(output, certificate.CERTIFICATE, inputs, options.force)
+    found = find(
+        options.scene,
+        over=options.over,
+        set=pairs(options.overrides),
+        claims=options.claim,
+        boxes=MOST if options.boxes is None else options.boxes,
+    )
+    writers = {output: lambda path: certificate.write(found, path, inputs, options.force)}
+    return _reported(found, show, writers)
 
 
 def add_optimize(commands: Any) -> None:

@@ -3,6 +3,7 @@
 A run shows a claim at its samples and between them; a condition says what must be so at every angle.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -33,6 +34,23 @@ class Always:
     def forms(self) -> tuple[Linear, ...]:
         """Return all that it is about."""
         return self.any_of
+
+    def ranges(self, first: float, last: float) -> list[tuple[float, float]]:
+        """Return the ranges of the shaft angle between two angles that it is about [rad]."""
+        if self.window is None and not self.angles:
+            return [(first, last)]
+        turn, found = 2.0 * math.pi, []
+        wanted = [(angle, 0.0) for angle in self.angles]
+        if self.window is not None:
+            wanted = [(self.window.start, self.window.width)]
+        for start, width in wanted:
+            for number in range(
+                math.floor((first - start - width) / turn), math.ceil((last - start) / turn) + 1
+            ):
+                low, high = max(first, start + turn * number), min(last, start + turn * number + width)
+                if low <= high:
+                    found.append((low, high))
+        return found
 
 
 @dataclass(frozen=True)

@@ -1,22 +1,77 @@
-"""A slice of a component: what some of its outputs depend on, without the rest of its source."""
+"""A slice of a component: what some of its outputs depend on with some settings, without the rest of its source."""
 
 import ast
-from collections.abc import Iterable, Iterator
+import operator
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import Any
 
+from ...declaring.variables import Variable
 from .c_code import of_self
 
 Place = tuple[str, str]  # a function and a name in it; "" for the component's own variables
 RETURNED = "return"  # in the place of a name: what a function returns
 SELF = ""
+COMPARED: dict[type[ast.cmpop], Any] = {
+    ast.Eq: operator.eq,
+    ast.NotEq: operator.ne,
+    ast.Lt: operator.lt,
+    ast.LtE: operator.le,
+    ast.Gt: operator.gt,
+    ast.GtE: operator.ge,
+}
 
 
-def sliced(tree: ast.Module, entries: Iterable[str], wanted: Iterable[str]) -> ast.Module:
+def sliced(
+    tree: ast.Module, entries: Iterable[str], wanted: Iterable[str], settings: Mapping[str, Any]
+) -> ast.Module:
     """Return the module with only the statements that these variables depend on, and what the entries return.
 
-    The tree is changed. A statement stays if it may set what a statement that stays reads, and every return
+    `settings` are parameters that keep their value: what they rule out is left out. The tree is changed. A statement stays if it may set what a statement that stays reads, and every return
     of a function that stays.
     """
-    return _Slice(tree, entries, wanted).tree
+    return _Slice(_Settled(tree, settings).visit(tree), entries, wanted).tree
+
+
+class _Settled(ast.NodeTransformer):
+    """Takes the branch that settings decide on, instead of both."""
+
+    def __init__(self, tree: ast.Module, settings: Mapping[str, Any]):
+        self._known = {f"self.{name}": value for name, value in settings.items()}
+        for node in tree.body:
+            if isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant):
+                self._known[ast.unparse(node.targets[0])] = node.value.value
+
+    def visit_If(self, node: ast.If) -> Any:
+        self.generic_visit(node)
+        value = self._value(node.test)
+        if value is None:
+            return node
+        return (node.body if value else node.orelse) or ast.Pass()
+
+    def visit_IfExp(self, node: ast.IfExp) -> ast.AST:
+        self.generic_visit(node)
+        value = self._value(node.test)
+        return node if value is None else node.body if value else node.orelse
+
+    def _value(self, node: ast.expr) -> Any:
+        """The value of a condition; None where it is open."""
+        if isinstance(node, ast.Constant):
+            return node.value
+        if isinstance(node, ast.Name | ast.Attribute):
+            return self._known.get(ast.unparse(node))
+        if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not):
+            value = self._value(node.operand)
+            return None if value is None else not value
+        if isinstance(node, ast.BoolOp):
+            values = [self._value(each) for each in node.values]
+            decides = isinstance(node.op, ast.Or)
+            if any(value is not None and bool(value) == decides for value in values):
+                return decides
+            return None if None in values else not decides
+        if isinstance(node, ast.Compare) and len(node.ops) == 1 and type(node.ops[0]) in COMPARED:
+            left, right = self._value(node.left), self._value(node.comparators[0])
+            return None if None in (left, right) else COMPARED[type(node.ops[0])](left, right)
+        return None
 
 
 class _Slice:
@@ -39,7 +94,7 @@ class _Slice:
                         self._keep(name, each)
         for name, function in self.functions.items():
             if name != "__init__" and function.args.args != []:
-                function.body = self._left(function.body)
+                function.body = self._left(function.body) or [ast.Pass()]
 
     def _matters(self, function: str, statement: ast.stmt) -> bool:
         if isinstance(statement, ast.Return):
@@ -59,11 +114,11 @@ class _Slice:
         if function not in self.functions:
             return False
         return any(
-            isinstance(node, ast.Attribute | ast.Subscript)
-            and isinstance(node.ctx, ast.Store)
-            or isinstance(node, ast.Call)
+            (isinstance(node, ast.Attribute | ast.Subscript)
+            and isinstance(node.ctx, ast.Store))
+            or (isinstance(node, ast.Call)
             and _called(node) != function
-            and self._has_effect(_called(node))
+            and self._has_effect(_called(node)))
             for _parents, statement in _statements(self.functions[function].body, ())
             if statement in self.kept and not isinstance(statement, ast.If | ast.While | ast.For)
             for node in ast.walk(statement)
@@ -90,6 +145,15 @@ class _Slice:
                         setattr(statement, name, self._left(inner) or [ast.Pass()] * (name == "body"))
                 found.append(statement)
         return found
+
+
+def settings_of(variables: Iterable[Variable], start: Callable[[str], Any]) -> dict[str, Any]:
+    """Return the values of the parameters that choose: truth values and enumerations."""
+    return {
+        each.name: each.type(start(each.name))
+        for each in variables
+        if each.causality == "parameter" and (each.type is bool or each.choices)
+    }
 
 
 def _statements(

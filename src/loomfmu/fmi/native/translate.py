@@ -109,10 +109,12 @@ def translate(component: type[Component]) -> Translation:
         return _done[component]
 
 
-def translate_slice(component: type[Component], wanted: Iterable[str]) -> Written:
-    """What some variables of the component depend on, in C. Raises TranslationError as `translate`."""
+def translate_slice(
+    component: type[Component], wanted: Iterable[str], settings: Mapping[str, Any]
+) -> Written:
+    """What some variables of the component depend on with some settings, in C. Raises Untranslatable."""
     with _one_at_a_time:
-        tree = sliced(ast.parse(source.flatten(component)), ENTRIES, wanted)
+        tree = sliced(ast.parse(source.flatten(component)), ENTRIES, wanted, settings)
         return _written(component, tree, {}, PLAIN)
 
 

@@ -17,6 +17,7 @@ from ...cosim.scenes.instances import Instance
 from ...cosim.scenes.scene import Scene
 from ...declaring.variables import MOTION, TIME, Component, variables_of
 from ...errors import LoomfmuError
+from ...fmi.native.slicing import settings_of
 from .enclosed import Enclosed
 from .spans import Floats, both, constant, minus, plus, times
 
@@ -125,11 +126,16 @@ class Chain:
         wanted = tuple(sorted(each for each in read if variables[each].causality == "output"))
         return _Placed(
             instance.name,
-            Enclosed(component, wanted),
+            Enclosed(component, wanted, settings_of(variables.values(), instance.start)),
             {name: value for name, value in values.items() if name not in sides},
             sides,
             wires,
         )
+
+    @property
+    def components(self) -> tuple[type[Component], ...]:
+        """Return the components of the mechanisms."""
+        return tuple(placed.enclosed.component for placed in self._placed)
 
     def numbers(self, boxes: Floats) -> dict[str, Number]:
         """Return all numbers of the chain over boxes, shape (boxes, sides, 2), by signal; side 0 is the angle."""
@@ -138,9 +144,9 @@ class Chain:
             given = {name: Number.side(place, boxes) for name, place in placed.sides.items()}
             given |= {name: found[source] for name, source in placed.wires.items()}
             wide = {name: each.bounds for name, each in given.items()}
-            bounds = placed.enclosed.bounds(placed.values, wide)
+            bounds = placed.enclosed.bounds(placed.values, wide, boxes.shape)
             points = {name: each.middle[:, None] for name, each in given.items()}
-            middle = placed.enclosed.bounds(placed.values, points)
+            middle = placed.enclosed.bounds(placed.values, points, (len(boxes), 0))
             for name, each in bounds.items():
                 number = Number(each[:, 0], each[:, 1:], middle[name][:, 0])
                 found[f"{placed.name}.{name}"] = number.narrowed(boxes)

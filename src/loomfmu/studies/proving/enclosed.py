@@ -5,6 +5,7 @@ import re
 from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -171,9 +172,9 @@ static void forget({0} &a)
 """
 
 
-def program(component: type[Component], wanted: Sequence[str]) -> str:
-    """What some outputs of the component depend on, in C++."""
-    written, name = translate_slice(component, wanted), component.__name__
+def program(component: type[Component], wanted: Sequence[str], settings: Mapping[str, Any]) -> str:
+    """What some outputs of the component depend on with some settings, in C++."""
+    written, name = translate_slice(component, wanted, settings), component.__name__
     variables = variables_of(component)
     puts = [f"    case {len(variables)}: *time = value; break;"]
     gets = []
@@ -186,7 +187,7 @@ def program(component: type[Component], wanted: Sequence[str]) -> str:
     return PROGRAM.format(
         name=name,
         struct=written.struct,
-        functions=_with_ways(written.functions, name, written.changes),
+        functions=_with_ways(_exact(written.functions), name, written.changes),
         puts="\n".join(puts),
         gets="\n".join(gets),
         most=len(wanted),
@@ -232,6 +233,11 @@ def _with_ways(functions: str, name: str, changes: Mapping[str, frozenset[str]])
     return head[:first] + _joins(*structs) + head[first:] + "\n\n" + "\n".join(wrappers) + rest
 
 
+def _exact(functions: str) -> str:
+    """C in which a number of the source is one in real numbers, too: the compiler computes with none of them."""
+    return re.sub(r"(?<![\w.])(\d+\.\d*(?:e[+-]?\d+)?|\d+e[+-]?\d+)(?![\w.])", r"enclosure(\1)", functions)
+
+
 def _joins(*structs: str) -> str:
     """What is done with the results of several ways, for each struct."""
     texts = []
@@ -253,7 +259,7 @@ def _joins(*structs: str) -> str:
 class Enclosed:
     """A component over boxes of its inputs and parameters. Raises LoomfmuError without a compiler."""
 
-    def __init__(self, component: type[Component], wanted: Sequence[str]):
+    def __init__(self, component: type[Component], wanted: Sequence[str], settings: Mapping[str, Any]):
         variables = variables_of(component)
         self._places = {each.name: place for place, each in enumerate(variables)} | {TIME: len(variables)}
         self._inputs = {each.name for each in variables if each.causality == "input"}
@@ -261,17 +267,19 @@ class Enclosed:
             [n for n, each in enumerate(component.problems, 1) if each.warning], dtype=np.int32
         )
         self._memoryless = component.keeps == NOTHING
-        self._enclose = ctypes.CDLL(str(_library(component, tuple(wanted)))).enclose
-        self._wanted = wanted
+        self._enclose = ctypes.CDLL(str(_library(component, tuple(wanted), tuple(settings.items())))).enclose
+        self._wanted, self.component = wanted, component
 
-    def bounds(self, fixed: Mapping[str, float], given: Mapping[str, Floats]) -> dict[str, Floats]:
+    def bounds(
+        self, fixed: Mapping[str, float], given: Mapping[str, Floats], shape: tuple[int, ...]
+    ) -> dict[str, Floats]:
         """Place the component in boxes of what it is given, by variable; its wanted outputs, by variable.
 
         `fixed` are numbers, among them the `TIME`, which is unknown otherwise; what is `given` and what is returned has the shape (boxes, 1 + sides, 2): the bounds
         of the values, then those of the slopes by each side. Where the component might report a problem, they
         are open.
         """
-        rows, width, _two = next(iter(given.values())).shape
+        rows, width = shape[0], 1 + shape[1]
         names = [*fixed, *given]
         inputs = np.zeros((rows, len(names), width, 2))
         for place, value in enumerate(fixed.values()):
@@ -295,9 +303,11 @@ class Enclosed:
 
 
 @cache
-def _library(component: type[Component], wanted: tuple[str, ...]) -> Path:
+def _library(
+    component: type[Component], wanted: tuple[str, ...], settings: tuple[tuple[str, Any], ...]
+) -> Path:
     """The library of what some outputs of a component depend on, built once."""
-    text = program(component, wanted)
+    text = program(component, wanted, dict(settings))
     code = {"enclosed.cpp": text} | code_of(HEADER)
     identity = compiler.library_identity(code)
     return made_file(

@@ -17,8 +17,9 @@ from ...cosim.prepared import Prepared
 from ...cosim.reading import requested
 from ...cosim.results import Evaluation
 from ...cosim.scenes.scene import Scene
+from ...declaring.variables import Component
 from ...errors import LoomfmuError, shown
-from ...sweeps.varied import Varied, varied
+from ..span import Span, set_twice, span_of, warnings_of
 from .chain import SHAFT, START, Chain, Number
 from .cover import Cover, Decision, cover
 from .enclosed import LARGEST_BOX
@@ -43,7 +44,8 @@ class Proof:
     share: float = 0.0
     boxes: int = 0
     witness: Mapping[str, str] = field(default_factory=dict)
-    covers: tuple[tuple[Condition, tuple[Cover, ...]], ...] = ()
+    covers: tuple[tuple[Condition, tuple[Cover, ...]], ...] = field(default=(), repr=False)
+    components: tuple[type[Component], ...] = field(default=(), repr=False)
 
     def __bool__(self) -> bool:
         return self.status == PROVEN
@@ -54,7 +56,7 @@ class Proofs:
     """What was proven of a scene `over` a box; true if all claims are proven."""
 
     scene: Scene
-    over: Mapping[str, tuple[str, str]]
+    over: tuple[Span, ...]
     claims: tuple[Proof, ...]
     warnings: tuple[str, ...] = ()
 
@@ -65,7 +67,7 @@ class Proofs:
 def prove(
     scene: str | Path | Scene,
     *,
-    over: Mapping[str, tuple[Any, Any]] | None = None,
+    over: Sequence[str] = (),
     set: dict[str, Any] | None = None,  # the command's own word
     claims: Sequence[str] | None = None,
     boxes: int = MOST,
@@ -78,7 +80,7 @@ def prove(
 
     Args:
         scene, set: as for `run`
-        over: the lowest and the highest value of parameters that vary together, by key
+        over: parameters that vary together, each with its range, such as "shaft.speed=300rpm..640rpm"
         claims: names of those to be proven; all of them by default
         boxes: so many are looked at for one condition, before it is left open
 
@@ -86,9 +88,13 @@ def prove(
         LoomfmuError: bad input, or a claim that is not there
     """
     asked = requested(scene, set, "native")
-    sides = [_side(asked.scene, key, ends) for key, ends in (over or {}).items()]
+    sides = [span_of(asked.scene, text) for text in over]
     if len(sides) >= LARGEST_BOX:
         raise LoomfmuError(f"over has {len(sides)} parameters; at most {LARGEST_BOX - 1} vary together")
+    if twice := set_twice(sides):
+        raise LoomfmuError(f"{twice[0].key} and {twice[1].key} both set {twice[2]}")
+    for side in sides:
+        _check_follows(asked.scene, side)
     names = [str(table.get("name") or table["kind"]) for table in asked.scene.claims]
     for name in claims or ():
         if name not in names:
@@ -97,56 +103,35 @@ def prove(
     with Prepared(asked.scene, None, "native", ()) as loom:
         search = _Search(asked, loom, sides, boxes)
         found = [search.proof(number, names[number]) for number in wanted]
-    texts = {side.varied.key: (side.varied.show(side.low), side.varied.show(side.high)) for side in sides}
-    return Proofs(asked.scene, texts, tuple(found), asked.scene.notes)
+    return Proofs(asked.scene, tuple(sides), tuple(found), warnings_of(sides, asked.scene.notes))
 
 
-@dataclass(frozen=True)
-class Side:
-    """A parameter of the box, from its lowest to its highest value in SI."""
-
-    varied: Varied
-    low: float
-    high: float
-
-    @property
-    def targets(self) -> list[tuple[str, str]]:
-        """Return the instances and variables that take its value."""
-        return [
-            (name, variable) for name, _dot, variable in (each.partition(".") for each in self.varied.targets)
-        ]
-
-
-def _side(scene: Scene, key: str, ends: tuple[Any, Any]) -> Side:
-    """One side of the box. Raises LoomfmuError for what cannot vary, and for an empty range."""
-    found = varied(scene, key)
-    if found.kind != "Real" or found.needs_scene or not found.targets:
-        raise LoomfmuError(f"{key} cannot vary in a proof: it is not the value of a parameter")
-    low, high = (float(found.read(end)) for end in ends)
-    if not low < high:
-        raise LoomfmuError(f"{key}: the range from {ends[0]} to {ends[1]} is empty")
-    for value in (low, high):
-        moved = requested(scene, {key: found.setting(value)}, "native").scene
-        _check_follows(scene, moved, found, value)
-    return Side(found, low, high)
-
-
-def _check_follows(scene: Scene, moved: Scene, of: Varied, value: float) -> None:
-    """Refuse a value that others follow in a way that is not known."""
-    for name, each in moved.instances.items():
-        for variable in {*each.values, *scene.instances[name].values}:
-            if each.start(variable) != scene.instances[name].start(variable):
-                if f"{name}.{variable}" not in of.targets and each.start(variable) != value:
-                    raise LoomfmuError(f"{of.key} cannot vary in a proof: {name}.{variable} changes with it")
+def _check_follows(scene: Scene, span: Span) -> None:
+    """Refuse what is no number of a parameter, and a value that others follow in a way that is not known."""
+    if span.varied.kind != "Real" or not span.varied.targets:
+        raise LoomfmuError(f"{span.key} cannot vary in a proof: it is not the value of a parameter")
+    for value in (span.low, span.high):
+        moved = requested(scene, span.setting(value), "native").scene
+        for name, each in moved.instances.items():
+            for variable in {*each.values, *scene.instances[name].values}:
+                changes = each.start(variable) != scene.instances[name].start(variable)
+                if changes and f"{name}.{variable}" not in span.varied.targets:
+                    raise LoomfmuError(
+                        f"{span.key} cannot vary in a proof: {name}.{variable} changes with it"
+                    )
 
 
 class _Search:
     """Looks for proofs and witnesses in one box of a scene."""
 
-    def __init__(self, asked: Requested, loom: Prepared, sides: Sequence[Side], most: int):
+    def __init__(self, asked: Requested, loom: Prepared, sides: Sequence[Span], most: int):
         self._asked, self._loom, self._sides, self._most = asked, loom, sides, most
         self._scene = asked.scene
-        self._targets = {target: place for place, side in enumerate(sides, 1) for target in side.targets}
+        self._targets = {
+            (target.partition(".")[0], target.partition(".")[2]): place
+            for place, side in enumerate(sides, 1)
+            for target in side.varied.targets
+        }
         self._box = np.array([(side.low, side.high) for side in sides]).reshape(-1, 2)
 
     def proof(self, number: int, name: str) -> Proof:
@@ -165,12 +150,12 @@ class _Search:
         boxes = sum(each.boxes for each in parts)
         left = [box for each in parts for box in each.open]
         if not left:
-            return Proof(name, PROVEN, "", 1.0, boxes, covers=covers)
+            return Proof(name, PROVEN, "", 1.0, boxes, {}, covers, chain.components)
         places = (self._middle(box) for box in left[:: math.ceil(len(left) / LOOKED_AT)])
         witness = self._witness(number, map(self._run, places))
         if witness is not None:
             return Proof(name, REFUTED, "", share, boxes, witness)
-        return Proof(name, OPEN, f"{len(left)} of {boxes} boxes are left", share, boxes, covers=covers)
+        return Proof(name, OPEN, f"{len(left)} of {boxes} boxes are left", share, boxes)
 
     # ---- covers
 
@@ -181,7 +166,7 @@ class _Search:
             return (cover(self._box, decide, self._most // 64),) if len(self._box) else (_alone(decide),)
         return tuple(
             cover(np.concatenate([[angles], self._box]), partial(decide_always, chain, condition), self._most)
-            for angles in self._angles(condition, start)
+            for angles in condition.ranges(start, start + self._turned)
         )
 
     @property
@@ -189,24 +174,16 @@ class _Search:
         """The angle by which the shaft turns in the run."""
         return 2.0 * math.pi * self._scene.periods
 
-    def _angles(self, condition: Always, start: float) -> list[tuple[float, float]]:
-        """The ranges of the shaft angle that a condition is about, for all revolutions of the run."""
-        return angles_of(condition, start, start + self._turned)
-
     # ---- witnesses
 
     @cached_property
     def _runs(self) -> list[tuple[dict[str, float], Evaluation]]:
         """Runs at the ends and in the middle of the first two sides, the others along with them."""
-        shares = np.linspace(0.0, 1.0, 3)
         return [
             self._run(
-                {
-                    side.varied.key: side.low + share * (side.high - side.low)
-                    for side, share in zip(self._sides, cycle(row), strict=False)
-                }
+                {side.key: side.at(share) for side, share in zip(self._sides, cycle(row), strict=False)}
             )
-            for row in product(shares, repeat=min(2, len(self._sides)))
+            for row in product((0.0, 0.5, 1.0), repeat=min(2, len(self._sides)))
         ]
 
     def _run(self, values: dict[str, float]) -> tuple[dict[str, float], Evaluation]:
@@ -215,34 +192,17 @@ class _Search:
     def _middle(self, box: Floats) -> dict[str, float]:
         """The values in the middle of a box, which may have the shaft angle before them."""
         middle = box[len(box) - len(self._sides) :].mean(axis=-1)
-        return {side.varied.key: float(value) for side, value in zip(self._sides, middle, strict=True)}
+        return {side.key: float(value) for side, value in zip(self._sides, middle, strict=True)}
 
     def _witness(
         self, number: int, runs: Iterable[tuple[dict[str, float], Evaluation]]
     ) -> dict[str, str] | None:
         """Return the values of the first run in which the claim fails."""
-        shown_as = {side.varied.key: side.varied.show for side in self._sides}
+        shown_as = {side.key: side.show for side in self._sides}
         for values, run in runs:
             if run.claims[number].holds is False:
                 return {key: shown_as[key](value) for key, value in values.items()}
         return None
-
-
-def angles_of(condition: Always, first: float, last: float) -> list[tuple[float, float]]:
-    """Return the ranges of the shaft angle between two angles that a condition is about [rad]."""
-    turn = 2.0 * math.pi
-    if condition.window is None and not condition.angles:
-        return [(first, last)]
-    ranges = [(angle, 0.0) for angle in condition.angles]
-    if condition.window is not None:
-        ranges = [(condition.window.start, condition.window.width)]
-    found = []
-    for start, width in ranges:
-        for number in range(math.floor((first - start - width) / turn), math.ceil((last - start) / turn) + 1):
-            low, high = max(first, start + turn * number), min(last, start + turn * number + width)
-            if low <= high:
-                found.append((low, high))
-    return found
 
 
 def value_of(form: Linear, chain: Chain, numbers: Mapping[str, Number], boxes: Floats) -> Number:

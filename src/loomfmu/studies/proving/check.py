@@ -1,0 +1,264 @@
+"""Confirms a certificate of `prove`, without the prover: the components' own Python, run on intervals."""
+
+import ast
+import hashlib
+import json
+import math
+import tempfile
+from collections.abc import Iterator, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from ...components.shaft_driven import FOLLOWING, ShaftDriven
+from ...cosim.claims.conditions import Always, Condition, Linear, names_of
+from ...cosim.planning.pruning import prune
+from ...cosim.reading import requested
+from ...cosim.scenes import scene as scenes
+from ...cosim.scenes.graph import step_order
+from ...cosim.scenes.instances import Instance
+from ...cosim.scenes.scene import Scene
+from ...declaring.variables import MOTION, variables_of
+from ...errors import LoomfmuError
+from ...files import text_of
+from ...fmi import source
+from ...fmi.native.slicing import settings_of, sliced
+from ...fmi.native.translate import ENTRIES
+from ...sweeps.varied import varied
+from .intervals import ALL, MATH, Ends, Interval, Unknown, joined, number
+
+FORMAT = "loomfmu proof 1"
+SHAFT, START = "shaft", "start_angle"
+FINER = 6  # bisections of a box that this arithmetic, which is wider, may need on top
+Box = tuple[Ends, ...]
+
+
+class Refused(LoomfmuError):
+    """A certificate that proves less than it says."""
+
+
+def check(path: str | Path) -> list[str]:
+    """Return the claims that a certificate proves, each confirmed. Raises Refused, and LoomfmuError for no certificate."""
+    try:
+        told = json.loads(text_of(Path(path)))
+        if told["format"] != FORMAT:
+            raise Refused(f"{path}: format = {told['format']!r} must be {FORMAT!r}")
+        return _Check(told).confirmed
+    except Refused as error:
+        raise Refused(f"{path}: {error}") from None
+    except (ValueError, KeyError, TypeError, IndexError, AttributeError) as error:
+        raise LoomfmuError(f"{path} is no certificate of a proof: {type(error).__name__} {error}") from None
+
+
+class _Check:
+    def __init__(self, told: dict[str, Any]):
+        with tempfile.TemporaryDirectory() as folder:
+            for name, text in told["texts"].items():
+                place = (Path(folder) / name).resolve()
+                if not place.is_relative_to(Path(folder).resolve()):
+                    raise Refused(f"{name} is outside of the scene's folder")
+                place.parent.mkdir(parents=True, exist_ok=True)
+                place.write_text(text, encoding="utf-8")
+            scene = scenes.parse(told["scene"], told["name"], told["overrides"], folder)
+            self._asked = requested(scene, None, "native")
+        self._scene = scene = self._asked.scene
+        self._ends = [tuple(map(float.fromhex, ends)) for ends in told["over"].values()]
+        if not all(low < high and math.isfinite(high - low) for low, high in self._ends):
+            raise Refused("the box is empty")
+        self._sides = {(SHAFT, START): 0}
+        for place, (key, ends) in enumerate(zip(told["over"], self._ends, strict=True), 1):
+            about = varied(scene, key)
+            for end in ends:  # refuses what cannot be
+                requested(scene, {key: about.setting(about.read(about.setting(end)))}, "native")
+            self._sides |= {tuple(each.split(".")): place for each in about.targets}
+        self._equations = told["equations"]
+        names = [str(table.get("name") or table["kind"]) for table in scene.claims]
+        self.confirmed = []
+        for claim in told["claims"]:
+            conditions = self._asked.claims[names.index(claim["name"])].conditions(self._asked)
+            if len(conditions) != len(claim["conditions"]):
+                raise Refused(
+                    f"{claim['name']}: {len(claim['conditions'])} conditions, not {len(conditions)}"
+                )
+            chain = _Mechanisms(scene, names_of(conditions), self._sides, self._equations)
+            for condition, covers in zip(conditions, claim["conditions"], strict=True):
+                self._check(claim["name"], condition, covers, chain)
+            self.confirmed.append(claim["name"])
+
+    def _check(self, name: str, condition: Condition, covers: Sequence[Any], chain: "_Mechanisms") -> None:
+        start = float(self._scene.instances[SHAFT].start(START) or 0.0)
+        last = start + 2.0 * math.pi * self._scene.periods
+        if not isinstance(condition, Always):
+            raise Refused(f"{name}: spans cannot be confirmed")
+        ranges = condition.ranges(start, last)
+        if len(ranges) != len(covers):
+            raise Refused(f"{name}: {len(covers)} ranges of the shaft angle, not {len(ranges)}")
+        for angles, tree in zip(ranges, covers, strict=True):
+            for box in _leaves((angles, *self._ends), iter(tree)):
+                if not _holds(chain, condition.any_of, box, FINER):
+                    raise Refused(f"{name} is not confirmed for {_text(box)}")
+
+
+def _leaves(box: Box, tree: Iterator[int]) -> Iterator[Box]:
+    """The boxes of a tree that starts here, which are together this one; nothing may be left of it."""
+    stack = [box]
+    while stack:
+        box = stack.pop()
+        side = next(tree, None)
+        if side is None or not isinstance(side, int) or not -1 <= side < len(box):
+            raise Refused("a box is missing")
+        if side < 0:
+            yield box
+        else:
+            low, high = box[side]
+            middle = min(max(0.5 * (low + high), low), high)
+            stack += [(*box[:side], part, *box[side + 1 :]) for part in ((middle, high), (low, middle))]
+    if next(tree, None) is not None:
+        raise Refused("there are more boxes than the box has parts")
+
+
+def _text(box: Box) -> str:
+    return ", ".join(f"{low:.6g} to {high:.6g}" for low, high in box)
+
+
+def _holds(chain: "_Mechanisms", forms: Sequence[Linear], box: Box, finer: int) -> bool:
+    """Return whether one of the forms is not negative all over a box, or over each half of it."""
+    try:
+        found, middle = chain.numbers(box), chain.numbers(tuple((m, m) for m in _middle(box)))
+        if any(_lowest(form, chain, found, middle, box) >= 0.0 for form in forms):
+            return True
+    except Unknown:
+        pass
+    side = max(range(len(box)), key=lambda each: (box[each][1] - box[each][0]) / max(1.0, abs(box[each][1])))
+    low, high = box[side]
+    if not finer or not low < high:
+        return False
+    parts = ((low, 0.5 * (low + high)), (0.5 * (low + high), high))
+    return all(_holds(chain, forms, (*box[:side], part, *box[side + 1 :]), finer - 1) for part in parts)
+
+
+def _middle(box: Box) -> list[float]:
+    return [min(max(0.5 * (low + high), low), high) for low, high in box]
+
+
+def _lowest(
+    form: Linear, chain: "_Mechanisms", found: dict[str, Interval], middle: dict[str, Interval], box: Box
+) -> float:
+    """The lowest value of a form: by its values, and from the middle of the box by its slopes."""
+    wide = chain.value(form, found)
+    about: Any = number(0.0) + Interval(chain.value(form, middle).ends, None)
+    for slope, side, place in zip(wide.slopes or (), box, _middle(box), strict=False):
+        about = about + Interval(slope, None) * (Interval(side, None) - place)
+    return max(wide.ends[0], about.ends[0])
+
+
+class _Mechanisms:
+    """The mechanisms that some signals need, in their order, each a module of Python that computes with intervals."""
+
+    def __init__(self, scene: Scene, names: Sequence[str], sides: dict[Any, int], equations: dict[str, str]):
+        self._scene, self._sides = scene, sides
+        outputs = [
+            n
+            for n in names
+            if scene.instances[n.split(".")[0]].fmu.ports[n.split(".")[1]].causality == "output"
+        ]
+        needed = prune(scene, outputs, keep_shafts=True).scene
+        order, lagged = step_order(needed.instances, needed.wires)
+        if lagged or needed.drives:
+            raise Refused("the scene has a loop or a table of inputs")
+        read = {wire.source for wire in needed.wires} | {tuple(name.split(".")) for name in names}
+        self._parts = []
+        for name in order:
+            instance = needed.instances[name]
+            component = instance.fmu.component
+            if component is None or component.keeps == MOTION or any(map(instance.start, component.unsteady)):
+                raise Refused(f"{name} depends on more than the shaft angle")
+            if issubclass(component, ShaftDriven) and not instance.start(FOLLOWING):
+                raise Refused(f"{name} does not follow the shaft")
+            if equations.get(component.__name__) != digest(component):
+                raise Refused(f"the equations of {component.__name__} are not those of the proof")
+            wanted = [
+                v.name for v in variables_of(component) if (name, v.name) in read and v.causality == "output"
+            ]
+            wires = {w.sink[1]: ".".join(w.source) for w in needed.wires if w.sink[0] == name}
+            warnings = [0, *(n for n, each in enumerate(component.problems, 1) if each.warning)]
+            self._parts.append(
+                (name, instance, component, _module(component, wanted, instance), wanted, wires, warnings)
+            )
+
+    def numbers(self, box: Box) -> dict[str, Interval]:
+        """Return all outputs over a box. Raises Unknown where too little is known of them."""
+        Interval.sides, found = len(box), dict[str, Interval]()
+        for name, instance, component, module, wanted, wires, warnings in self._parts:
+            given = {
+                each.name: each.type(instance.start(each.name) if each.settable else each.start)
+                for each in variables_of(component)
+            }
+            given |= {variable: found[source] for variable, source in wires.items()}
+            given |= {key[1]: _side(place, box) for key, place in self._sides.items() if key[0] == name}
+            time = number(0.0) if name == SHAFT else Interval(ALL, [ALL] * len(box))
+            results = joined(partial(_started, component, module, wanted, warnings))(given, time)
+            found |= {f"{name}.{variable}": each for variable, each in zip(wanted, results, strict=True)}
+        return found | {".".join(key): _side(place, box) for key, place in self._sides.items()}
+
+    def value(self, form: Linear, found: dict[str, Interval]) -> Interval:
+        """Return a sum of signals and parameters."""
+        total = number(form.constant)
+        for share, name in form.terms:
+            instance, variable = name.split(".")
+            start = self._scene.instances[instance].start(variable) if name not in found else 0.0
+            total = total + share * found.get(name, number(float(start or 0.0)))
+        return total
+
+
+def _side(place: int, box: Box) -> Interval:
+    return Interval(box[place], [(float(n == place),) * 2 for n in range(len(box))])
+
+
+def _started(
+    component: Any, module: Any, wanted: Any, warnings: Any, given: dict[str, Any], time: Any
+) -> Any:
+    """Outputs of a component at the start of a run. Raises Unknown where it may report a problem."""
+    made = module[component.__name__]()
+    for each in variables_of(component):
+        value = given[each.name]
+        if each.type is not float and isinstance(value, Interval):
+            value = each.type(MATH["floor"](value))
+        setattr(made, each.name, number(value) if each.type is float else value)
+    if made.initialize(time) not in warnings:
+        raise Unknown
+    return tuple(number(getattr(made, variable)) for variable in wanted)
+
+
+def digest(component: Any) -> str:
+    """Return the SHA-256 of a component's equations."""
+    return hashlib.sha256(source.flatten(component).encode()).hexdigest()
+
+
+class _Numbers(ast.NodeTransformer):
+    """Makes each number with a point an interval, and each quotient one of intervals."""
+
+    def visit_Constant(self, node: ast.Constant) -> ast.AST:
+        return (
+            ast.parse(f"number({node.value!r})", mode="eval").body if isinstance(node.value, float) else node
+        )
+
+    def visit_BinOp(self, node: ast.BinOp) -> ast.AST:
+        self.generic_visit(node)
+        if isinstance(node.op, ast.Div):
+            node.left = ast.Call(ast.Name("number", ast.Load()), [node.left], [])
+        return node
+
+
+def _module(component: Any, wanted: Sequence[str], instance: Instance) -> dict[str, Any]:
+    """What some outputs of a component depend on, as a module that computes with intervals."""
+    settings = settings_of(variables_of(component), instance.start)
+    tree = sliced(ast.parse(source.flatten(component)), ENTRIES, wanted, settings)
+    constants = {name: number(getattr(math, name)) for name in ("pi", "inf", "e", "tau")}
+    space: dict[str, Any] = {"number": number, **constants, **MATH}
+    tree.body = [node for node in tree.body if not isinstance(node, ast.ImportFrom)]
+    exec(compile(ast.fix_missing_locations(_Numbers().visit(tree)), component.__name__, "exec"), space)
+    for node in tree.body:
+        if isinstance(node, ast.FunctionDef):
+            space[node.name] = joined(space[node.name])
+    return space
