@@ -25,7 +25,7 @@ class _Lifted(Claim, kind=False):
     lifted_by: str = argument(Name(), "")
 
     def ends(self, run: Wired, tolerance: float) -> tuple[Linear, Linear]:
-        """Return what is not negative within a share of the stroke from the lower end, and from the upper one."""
+        """Return what is not negative within a share of the stroke from the lower and from the upper end."""
         lift, stroke = lift_of(self.heald, self.lifted_by, run), f"{self.heald}.stroke"
         lower = Linear(((tolerance, stroke), (-1.0, lift)))
         return lower, Linear(((1.0, lift), (tolerance - 1.0, stroke)))

@@ -85,7 +85,7 @@ class Claim(ABC):
         """Return the rule by which it is judged, with the signals and numbers that this takes of a run."""
 
     def conditions(self, run: Wired) -> tuple[Condition, ...]:
-        """Return what must be so at every shaft angle, all of it. Raises LoomfmuError where that is not all."""
+        """Return what must be so at every shaft angle. Raises LoomfmuError where the run so far matters."""
         raise LoomfmuError("what it judges depends on the run so far, not on the shaft angle alone")
 
     def form(self, text: str, signal: str) -> Form:

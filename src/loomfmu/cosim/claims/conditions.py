@@ -24,7 +24,7 @@ class Linear:
 
 @dataclass(frozen=True)
 class Always:
-    """At all angles, or those of a window, or at some angles of every revolution, one of these is not negative."""
+    """At all angles, or those of a window, or at some of every revolution, one of these is not negative."""
 
     any_of: tuple[Linear, ...]
     window: Window | None = None
@@ -55,7 +55,7 @@ class Always:
 
 @dataclass(frozen=True)
 class Spans:
-    """Whenever this stops being negative, it stays so for an angle; an end of the run may cut that off [rad]."""
+    """Whenever this stops being negative, it stays so for an angle [rad], unless the run ends before."""
 
     inside: Linear
     at_least: float

@@ -63,7 +63,7 @@ def web_assembly(source: str, code: dict[str, str]) -> bytes:
 
 
 def of_boxes(source: str, code: dict[str, str]) -> bytes:
-    """A file of C++ that uses no library but libm, as a shared library for this machine. Raises as `library`."""
+    """A file of C++ that uses libm alone, as a shared library for this machine. Raises as `library`."""
     with tempfile.TemporaryDirectory(prefix="loomfmu-") as name:
         directory, output = Path(name), Path(f"{Path(source).stem}{HERE.suffix}")
         for file, text in code.items():

@@ -1,4 +1,4 @@
-"""A slice of a component: what some of its outputs depend on with some settings, without the rest of its source."""
+"""A slice of a component: what some of its outputs depend on with some settings, without the rest."""
 
 import ast
 import operator
@@ -24,10 +24,10 @@ COMPARED: dict[type[ast.cmpop], Any] = {
 def sliced(
     tree: ast.Module, entries: Iterable[str], wanted: Iterable[str], settings: Mapping[str, Any]
 ) -> ast.Module:
-    """Return the module with only the statements that these variables depend on, and what the entries return.
+    """Return the module with only the statements that these variables, and what entries return, depend on.
 
-    `settings` are parameters that keep their value: what they rule out is left out. The tree is changed. A statement stays if it may set what a statement that stays reads, and every return
-    of a function that stays.
+    `settings` are parameters that keep their value: what they rule out is left out. A statement stays if it
+    may set what a statement that stays reads, and every return of a function that stays. The tree is changed.
     """
     return _Slice(_Settled(tree, settings).visit(tree), entries, wanted).tree
 
@@ -110,15 +110,12 @@ class _Slice:
         )
 
     def _has_effect(self, function: str) -> bool:
-        """Return whether what is kept of a function sets a variable of the component, or an array it is given."""
+        """Return whether what is kept of a function sets a variable of the component, or an array."""
         if function not in self.functions:
             return False
         return any(
-            (isinstance(node, ast.Attribute | ast.Subscript)
-            and isinstance(node.ctx, ast.Store))
-            or (isinstance(node, ast.Call)
-            and _called(node) != function
-            and self._has_effect(_called(node)))
+            (isinstance(node, ast.Attribute | ast.Subscript) and isinstance(node.ctx, ast.Store))
+            or (isinstance(node, ast.Call) and _called(node) != function and self._has_effect(_called(node)))
             for _parents, statement in _statements(self.functions[function].body, ())
             if statement in self.kept and not isinstance(statement, ast.If | ast.While | ast.For)
             for node in ast.walk(statement)

@@ -9,7 +9,7 @@ import io
 import math
 import tokenize
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import groupby
 from pathlib import Path
@@ -52,7 +52,7 @@ class Written:
 
     struct: str
     functions: str
-    changes: Mapping[str, frozenset[str]]
+    changes: Mapping[str, frozenset[str]] = field(default_factory=dict)
     """The variables that each method changes, those that it calls included."""
 
 

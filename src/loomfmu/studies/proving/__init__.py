@@ -1,1 +1,1 @@
-"""`prove`: claims for all shaft angles and all values of a box, by enclosures of the components' equations."""
+"""`prove`: claims for all shaft angles and all values within ranges, by enclosures of the equations."""

@@ -49,7 +49,8 @@ class Number:
     @property
     def bounds(self) -> Floats:
         """Return the values and the slopes in one array, (boxes, 1 + sides, 2)."""
-        return np.concatenate([self.values[:, None], self.slopes], axis=1)
+        bounds: Floats = np.concatenate([self.values[:, None], self.slopes], axis=1)
+        return bounds
 
     def plus(self, other: "Number", share: float = 1.0) -> "Number":
         """Return this number and a share of another one."""
@@ -72,7 +73,8 @@ class Number:
 
 def middles(boxes: Floats) -> Floats:
     """Return a point within each box, about its middle."""
-    return np.clip(boxes.mean(axis=-1), boxes[..., 0], boxes[..., 1])
+    found: Floats = np.clip(boxes.mean(axis=-1), boxes[..., 0], boxes[..., 1])
+    return found
 
 
 @dataclass(frozen=True)
@@ -116,7 +118,7 @@ class Chain:
         if issubclass(component, ShaftDriven) and not instance.start(FOLLOWING):
             raise LoomfmuError(f"{instance.name} does not follow the shaft")
         values = {
-            name: float(instance.start(name))
+            name: float(instance.start(name) or 0.0)
             for name, each in variables.items()
             if each.settable and name not in wires and instance.start(name) != each.start
         }
@@ -138,7 +140,7 @@ class Chain:
         return tuple(placed.enclosed.component for placed in self._placed)
 
     def numbers(self, boxes: Floats) -> dict[str, Number]:
-        """Return all numbers of the chain over boxes, shape (boxes, sides, 2), by signal; side 0 is the angle."""
+        """Return all numbers over boxes (boxes, sides, 2), by signal; side 0 is the shaft angle."""
         found: dict[str, Number] = {}
         for placed in self._placed:
             given = {name: Number.side(place, boxes) for name, place in placed.sides.items()}

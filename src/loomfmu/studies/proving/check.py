@@ -25,7 +25,7 @@ from ...fmi import source
 from ...fmi.native.slicing import settings_of, sliced
 from ...fmi.native.translate import ENTRIES
 from ...sweeps.varied import varied
-from .intervals import ALL, MATH, Ends, Interval, Unknown, joined, number
+from .intervals import ALL, MATH, Ends, Interval, Unknown, floor, joined, number
 
 FORMAT = "loomfmu proof 1"
 SHAFT, START = "shaft", "start_angle"
@@ -38,7 +38,7 @@ class Refused(LoomfmuError):
 
 
 def check(path: str | Path) -> list[str]:
-    """Return the claims that a certificate proves, each confirmed. Raises Refused, and LoomfmuError for no certificate."""
+    """Return the claims that a certificate proves, each confirmed. Raises Refused, a LoomfmuError."""
     try:
         told = json.loads(text_of(Path(path)))
         if told["format"] != FORMAT:
@@ -62,10 +62,10 @@ class _Check:
             scene = scenes.parse(told["scene"], told["name"], told["overrides"], folder)
             self._asked = requested(scene, None, "native")
         self._scene = scene = self._asked.scene
-        self._ends = [tuple(map(float.fromhex, ends)) for ends in told["over"].values()]
+        self._ends = [(float.fromhex(low), float.fromhex(high)) for low, high in told["over"].values()]
         if not all(low < high and math.isfinite(high - low) for low, high in self._ends):
             raise Refused("the box is empty")
-        self._sides = {(SHAFT, START): 0}
+        self._sides: dict[tuple[str, ...], int] = {(SHAFT, START): 0}
         for place, (key, ends) in enumerate(zip(told["over"], self._ends, strict=True), 1):
             about = varied(scene, key)
             for end in ends:  # refuses what cannot be
@@ -149,11 +149,12 @@ def _lowest(
     about: Any = number(0.0) + Interval(chain.value(form, middle).ends, None)
     for slope, side, place in zip(wide.slopes or (), box, _middle(box), strict=False):
         about = about + Interval(slope, None) * (Interval(side, None) - place)
-    return max(wide.ends[0], about.ends[0])
+    lowest: float = max(wide.ends[0], about.ends[0])
+    return lowest
 
 
 class _Mechanisms:
-    """The mechanisms that some signals need, in their order, each a module of Python that computes with intervals."""
+    """The mechanisms that some signals need, in their order, each a module that computes with intervals."""
 
     def __init__(self, scene: Scene, names: Sequence[str], sides: dict[Any, int], equations: dict[str, str]):
         self._scene, self._sides = scene, sides
@@ -223,7 +224,7 @@ def _started(
     for each in variables_of(component):
         value = given[each.name]
         if each.type is not float and isinstance(value, Interval):
-            value = each.type(MATH["floor"](value))
+            value = each.type(floor(value))
         setattr(made, each.name, number(value) if each.type is float else value)
     if made.initialize(time) not in warnings:
         raise Unknown

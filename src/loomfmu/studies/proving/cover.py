@@ -15,7 +15,7 @@ DECIDED = -1  # in a tree: a box that is not bisected
 
 @dataclass(frozen=True)
 class Decision:
-    """What is known of boxes: which are `proven`, and how much each side matters to the others (boxes, sides)."""
+    """Which boxes are `proven`, and how much each side of the others matters (boxes, sides)."""
 
     proven: NDArray[np.bool_]
     weights: Floats
@@ -26,7 +26,7 @@ class Cover:
     """A box, shape (sides, 2), and how it was bisected: the side of each bisected box, lower half first.
 
     `tree` lists the boxes from the whole one down, each before its halves: the side across which it was
-    bisected, or `DECIDED`. `open` are those that could not be decided, and `share` is what is proven of the whole.
+    bisected, or `DECIDED`. `open` are those left undecided, `share` is what is proven of the whole.
     """
 
     whole: Floats

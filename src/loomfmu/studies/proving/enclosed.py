@@ -17,7 +17,7 @@ from ...fmi.native.sources import code_of
 from ...fmi.native.translate import translate_slice
 from .spans import Floats
 
-HEADER = Path(__file__).parent / "native" / "enclosure.h"
+NATIVE = Path(__file__).parent / "native"
 LARGEST_BOX = 8  # sides of a box, as in the header
 
 PROGRAM = """#include "enclosure.h"
@@ -39,114 +39,14 @@ static enclosure got(const struct {name} *self, int place)
     }}
     return unknown();
 }}
-
-struct begun {{
-    struct {name} self;
-    int64_t status;
-}};
-
-struct outputs {{
-    int64_t status;
-    enclosure at[{most}];
-}};
 {joins}
 #undef double
-
-static enclosure read(const double *row)
-{{
-    enclosure made({{row[0], row[1]}}, ++serial, false);
-    for (int i = 0; i < box_size; i++) {{
-        made.slope[i] = {{row[2 + 2 * i], row[3 + 2 * i]}};
-        made.varies |= !(row[2 + 2 * i] == 0.0 && row[3 + 2 * i] == 0.0);
-    }}
-    if (row[0] == row[1] && !made.varies) {{
-        made.serial = 0;
-    }}
-    return made;
-}}
-
-static bool harmless(int64_t status, int64_t count, const int32_t *warnings)
-{{
-    bool found = status == 0;
-    for (int64_t i = 0; i < count; i++) {{
-        found |= status == warnings[i];
-    }}
-    return found;
-}}
-
-/* The component, given some inputs, at the start of a run, or at once another sample of it. */
-static begun started(begun before, bool again, int64_t given, const int32_t *to, const double *inputs)
-{{
-    enclosure time = unknown(); /* unless it is given */
-    if (!again) {{
-        {name}__init__(&before.self);
-    }}
-    for (int64_t i = 0; i < given; i++) {{
-        put(&before.self, &time, to[i], read(inputs + i * (2 + 2 * box_size)));
-    }}
-    before.status = again ? {name}__step(&before.self, time, enclosure(0.0)) : {name}__initialize(&before.self, time);
-    return before;
-}}
-
-/* The component in each of `rows` boxes: bounds of the values and slopes of some outputs, from those of its inputs.
- *
- * The first `fixed` inputs of each row are those of all rows; with `once` the component is initialized with these
- * alone, which needs outputs that depend on nothing before. Where it may report a problem, nothing is known.
- */
-extern "C" __attribute__((visibility("default"))) void enclose(int64_t rows, int64_t size, int64_t fixed, int64_t given, const int32_t *to,
-                               const double *inputs, int64_t wanted, const int32_t *from, double *results,
-                               int64_t once, int64_t count, const int32_t *warnings)
-{{
-    const int64_t width = 2 + 2 * size;
-    static begun first;
-    volatile bool failed = false;
-    frame outermost{{}};
-    box_size = (int)size;
-    if (setjmp(outermost.given_up)) {{
-        failed = true;
-    }} else if (once) {{
-        present = &outermost;
-        first = joined<begun>([=]() {{ return started(begun{{}}, false, fixed, to, inputs); }});
-        failed = !harmless(first.status, count, warnings);
-    }}
-    for (volatile int64_t row = 0; row < rows; row = row + 1) {{
-        double *result = results + row * wanted * width;
-        for (int64_t i = 0; i < wanted * width; i++) {{
-            result[i] = i % 2 ? INFINITY : -INFINITY;
-        }}
-        outermost = frame{{}};
-        serial = fresh += UINT64_C(1) << 28; /* no value of this row is one of another */
-        if (failed || setjmp(outermost.given_up)) {{
-            continue;
-        }}
-        present = &outermost;
-        const int64_t skipped = once ? fixed : 0;
-        const double *own = inputs + (row * given + skipped) * width;
-        const outputs found = joined<outputs>([=]() {{
-            const begun made = started(once ? first : begun{{}}, once, given - skipped, to + skipped, own);
-            outputs shown;
-            shown.status = made.status;
-            for (int64_t i = 0; i < {most}; i++) {{
-                shown.at[i] = i < wanted ? got(&made.self, from[i]) : enclosure(0.0);
-            }}
-            if (!harmless(made.status, count, warnings)) {{
-                longjmp(present->caller->given_up, 1);
-            }}
-            shown.status = 0;
-            return shown;
-        }});
-        for (int64_t i = 0; i < wanted; i++) {{
-            const enclosure &one = found.at[i];
-            double *here = result + i * width;
-            here[0] = one.value.low;
-            here[1] = one.value.high;
-            for (int64_t j = 0; j < size; j++) {{
-                here[2 + 2 * j] = one.varies ? one.slope[j].low : 0.0;
-                here[3 + 2 * j] = one.varies ? one.slope[j].high : 0.0;
-            }}
-        }}
-    }}
-}}
+#define OUTPUTS {most}
+typedef struct {name} component;
+#define component_start {name}__init__
+#define component_initialize {name}__initialize
+#define component_step {name}__step
+#include "enclose.h"
 """
 WRAPPER = """static {kind} {name}_in_one_way({arguments});
 static {kind} {name}({arguments})
@@ -191,11 +91,7 @@ def program(component: type[Component], wanted: Sequence[str], settings: Mapping
         puts="\n".join(puts),
         gets="\n".join(gets),
         most=len(wanted),
-        joins=_joins(
-            " ".join(written.struct.split()),
-            f"struct begun {{ struct {name} self; int64_t status; }};",
-            "struct outputs { int64_t status; enclosure at[1]; };",
-        ),
+        joins=_joins(" ".join(written.struct.split())),
     )
 
 
@@ -234,7 +130,7 @@ def _with_ways(functions: str, name: str, changes: Mapping[str, frozenset[str]])
 
 
 def _exact(functions: str) -> str:
-    """C in which a number of the source is one in real numbers, too: the compiler computes with none of them."""
+    """C in which each number of the source is an enclosure: the compiler computes with none of them."""
     return re.sub(r"(?<![\w.])(\d+\.\d*(?:e[+-]?\d+)?|\d+e[+-]?\d+)(?![\w.])", r"enclosure(\1)", functions)
 
 
@@ -267,7 +163,8 @@ class Enclosed:
             [n for n, each in enumerate(component.problems, 1) if each.warning], dtype=np.int32
         )
         self._memoryless = component.keeps == NOTHING
-        self._enclose = ctypes.CDLL(str(_library(component, tuple(wanted), tuple(settings.items())))).enclose
+        library = _library(component, tuple(wanted), tuple(settings.items()))  # type: ignore[arg-type] # mypy 6613
+        self._enclose = ctypes.CDLL(str(library)).enclose
         self._wanted, self.component = wanted, component
 
     def bounds(
@@ -275,9 +172,9 @@ class Enclosed:
     ) -> dict[str, Floats]:
         """Place the component in boxes of what it is given, by variable; its wanted outputs, by variable.
 
-        `fixed` are numbers, among them the `TIME`, which is unknown otherwise; what is `given` and what is returned has the shape (boxes, 1 + sides, 2): the bounds
-        of the values, then those of the slopes by each side. Where the component might report a problem, they
-        are open.
+        `fixed` are numbers, among them the `TIME`, which is unknown otherwise. What is `given`, and what is
+        returned, has the shape (boxes, 1 + sides, 2): the bounds of the values, then those of the slopes by
+        each side; `shape` begins with boxes and sides. Where there might be a problem, the bounds are open.
         """
         rows, width = shape[0], 1 + shape[1]
         names = [*fixed, *given]
@@ -308,7 +205,7 @@ def _library(
 ) -> Path:
     """The library of what some outputs of a component depend on, built once."""
     text = program(component, wanted, dict(settings))
-    code = {"enclosed.cpp": text} | code_of(HEADER)
+    code = {"enclosed.cpp": text} | code_of(NATIVE / "enclosure.h") | code_of(NATIVE / "enclose.h")
     identity = compiler.library_identity(code)
     return made_file(
         STEPPER, identity, f"{component.__name__}.so", lambda: compiler.of_boxes("enclosed.cpp", code)

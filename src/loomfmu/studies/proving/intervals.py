@@ -1,7 +1,7 @@
 """Intervals for the check of a proof: the components' Python computes with them instead of numbers.
 
-Their ends are rounded outwards; python-flint gives the functions. A comparison that intervals leave open is decided
-both ways, one after the other, and the results are joined. This shares nothing with what the proofs are made with.
+Their ends are rounded outwards; python-flint gives the functions. A comparison that intervals leave open is
+decided both ways, one after the other, and the results are joined. The prover has none of this.
 """
 
 import math
@@ -296,7 +296,7 @@ def _ends(ball: Any) -> Ends:
 
 
 def _at(name: str, x: Ends) -> Ends:
-    """A function over all values between two ends: over the ball about them, or at the ends where it only rises."""
+    """A function over all values between two ends: at the ends, where it only rises."""
     if name in ("sin", "cos") and all(map(math.isfinite, x)):
         low, high = _ends(getattr(arb(x[0]).union(arb(x[1])), name)())
         return max(low, -1.0), min(high, 1.0)

@@ -4,11 +4,12 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
-from itertools import cycle, product
+from itertools import cycle, pairwise, product
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ... import units
 from ...cosim.claims.conditions import Always, Condition, Linear, Spans, names_of
@@ -139,6 +140,7 @@ class _Search:
         try:
             conditions = self._asked.claims[number].conditions(self._asked)
             chain = Chain(self._scene, names_of(conditions), self._targets)
+            self._check_known(conditions, chain)
         except LoomfmuError as error:
             return Proof(name, IMPOSSIBLE, str(error))
         witness = self._witness(number, self._runs)
@@ -156,6 +158,15 @@ class _Search:
         if witness is not None:
             return Proof(name, REFUTED, "", share, boxes, witness)
         return Proof(name, OPEN, f"{len(left)} of {boxes} boxes are left", share, boxes)
+
+    def _check_known(self, conditions: Sequence[Condition], chain: Chain) -> None:
+        """Refuse equations of which nothing is known at a single point: no box is small enough for them."""
+        angle = np.float64(self._scene.instances[SHAFT].start(START)) + 0.4
+        point = np.repeat(np.array([angle, *self._box.mean(axis=1)])[None, :, None], 2, axis=2)
+        numbers = chain.numbers(point)
+        for name in names_of(conditions):
+            if not np.isfinite(chain.number(name, numbers, point).values).any():
+                raise LoomfmuError(f"{name} is found by a search that cannot be enclosed")
 
     # ---- covers
 
@@ -228,7 +239,7 @@ def _weights(slopes: Floats, boxes: Floats) -> Floats:
     """How much each side matters: the change across it, or its width where slopes are not known."""
     widths = boxes[..., 1] - boxes[..., 0]
     with np.errstate(invalid="ignore"):
-        change = np.abs(slopes).max(axis=-1) * widths
+        change: Floats = np.abs(slopes).max(axis=-1) * widths
     whole = np.max(widths, axis=0)
     unknown = ~np.isfinite(change).all(axis=1)
     change[unknown] = (widths / np.where(whole > 0.0, whole, 1.0))[unknown]
@@ -281,11 +292,11 @@ def _kinds(chain: Chain, form: Linear, edges: Floats, box: Floats) -> Floats:
     return kinds
 
 
-def _doubtful(kinds: Floats, edges: Floats, at_least: float) -> Floats:
+def _doubtful(kinds: Floats, edges: Floats, at_least: float) -> NDArray[np.bool_]:
     """The cells that keep a span from being long enough: those about it that are not surely inside."""
     doubtful = np.zeros(len(kinds), dtype=bool)
     inside = np.flatnonzero(np.concatenate([[True], kinds == OUT, [True]]))
-    for before, after in zip(inside[:-1], inside[1:], strict=True):
+    for before, after in pairwise(inside.tolist()):
         cells = slice(before, after - 1)
         group = kinds[cells]
         if not len(group) or before == 0 or after == len(kinds) + 1:

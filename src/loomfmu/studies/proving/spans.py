@@ -9,7 +9,7 @@ TINY = 2.0**-1021  # more than a rounding of the smallest numbers
 
 
 def outwards(low: Floats, high: Floats) -> Floats:
-    """Spans that rounding of their bounds, each computed once, cannot have made too narrow; NaN opens them."""
+    """Return spans that the rounding of their bounds cannot have made too narrow; NaN opens them."""
     low = low - (np.abs(low) * ULP + TINY)
     high = high + (np.abs(high) * ULP + TINY)
     return np.stack([np.where(low <= high, low, -np.inf), np.where(low <= high, high, np.inf)], axis=-1)

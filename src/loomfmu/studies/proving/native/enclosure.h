@@ -15,8 +15,8 @@
 #include <setjmp.h>
 
 #define LARGEST_BOX 8 /* parameters of a box, the shaft angle included */
-#define MOST_WAYS 32 /* of a function, before its result counts as unknown */
-#define MOST_DECISIONS 10 /* in one way */
+#define MOST_WAYS 64 /* of a function, before its result counts as unknown */
+#define MOST_DECISIONS 12 /* in one way */
 #define LIBRARY_ERROR 4.0 /* largest error of a function of libm, in units of the last place; tested */
 
 static int box_size = 0; /* parameters of the present box */
