@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from math import atan2, floor, sqrt
 from typing import Any
 
 import mpmath
@@ -116,9 +117,9 @@ class Jumping(Component):
             if number * 1.0 + 1.0 / 3.0 < self.x + number * 1.0:
                 self.hidden = 1.0
         self.pole = 1.0 / self.x
-        self.root = math.sqrt(self.x)
-        self.angle = math.atan2(0.0 - self.x, -1.0)
-        self.whole = 1.0 * math.floor(self.x)
+        self.root = sqrt(self.x)
+        self.angle = atan2(0.0 - self.x, -1.0)
+        self.whole = 1.0 * floor(self.x)
         self.sign = self.x * self.x if self.x > 0.0 else -self.x * self.x
         return 0
 
