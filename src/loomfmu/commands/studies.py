@@ -52,7 +52,7 @@ def _places(options: argparse.Namespace) -> dict[str, Any]:
 def limit(options: argparse.Namespace) -> int:
     """Find the values at which claims begin to fail."""
     from ..studies.limits import limit_tables
-    from ..studies.limits.boundary import limit as find
+    from ..studies.limits.limits import limit as find
 
     inputs = [Path(options.scene)]
     output = Path(options.output) if options.output else None

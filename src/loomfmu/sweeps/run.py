@@ -15,10 +15,9 @@ from ..extras import installed
 from ..files import ANY, write_file
 from ..traces import TRACE
 from . import plan as plans
-from .place import check_place, cluster, local, resumable
 from .plan import SweepPlan
 from .pools import Pool, Task, WorkerDied
-from .schedule import run_batches
+from .schedule import check_place, cluster, local, resumable, run_batches
 from .worker import Batch, Job, job_of, run_trace
 
 if TYPE_CHECKING:

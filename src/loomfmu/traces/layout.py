@@ -1,4 +1,4 @@
-"""The contents of a trace's file: what is said of a signal, and what is allowed.
+"""The contents of a trace's file: the attributes of a signal, and all that is allowed.
 
 Anything else might read other files, or fill the memory.
 """
@@ -80,7 +80,7 @@ def about_channel(channel: Channel) -> dict[str, Any]:
 
 
 def channel_of(signal: str, item: Any) -> Channel:
-    """What a dataset says of its signal. Raises ValueError for text that is not in UTF-8."""
+    """Read the channel that a dataset says it is. Raises ValueError for text that is not in UTF-8."""
 
     def text(name: str) -> str | None:
         found = legible(name, item.attrs.get(name))

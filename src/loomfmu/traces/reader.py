@@ -168,7 +168,7 @@ class Trace(Signals):
         return column(member(member(file, instance) if instance else file, variable))
 
     def channel(self, signal: str) -> Channel:
-        """What the file says of a signal. Raises LoomfmuError for one that is not recorded."""
+        """The channel that the file says a signal is. Raises LoomfmuError for one that is not recorded."""
         if signal not in self._channels:
             with self._dataset(signal) as dataset:
                 self._channels[signal] = channel_of(signal, dataset)

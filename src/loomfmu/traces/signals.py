@@ -25,7 +25,7 @@ NO_SHAFT = "no shaft turns"
 
 @dataclass(frozen=True)
 class Channel:
-    """What a trace says of a signal; of one in memory also in which `column` its values are."""
+    """A recorded signal: all that a trace says of it; in memory also the `column` of its values."""
 
     instance: str
     variable: str
@@ -99,7 +99,7 @@ class Signals(ABC):
 
     @abstractmethod
     def channel(self, signal: str) -> Channel:
-        """What the trace says of a signal. Raises LoomfmuError for one that is not recorded."""
+        """The channel of a signal. Raises LoomfmuError for one that is not recorded."""
 
     def unit(self, signal: str) -> str:
         """Unit of a signal."""
@@ -366,7 +366,7 @@ class Recording(Signals):
         return iter(self._channels)
 
     def channel(self, signal: str) -> Channel:
-        """What is said of a signal, and its column. Raises LoomfmuError for one that is not recorded."""
+        """The channel of a signal. Raises LoomfmuError for one that is not recorded."""
         if not isinstance(signal, str) or signal not in self._channels:
             raise self._unknown(signal)
         return self._channels[signal]

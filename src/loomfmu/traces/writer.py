@@ -17,8 +17,7 @@ import numpy as np
 from ..files import make_folder, put
 from ..version import __version__
 from .chunks import INTEGERS, REALS, ROWS, Columns, annotate, chunk_of, dataset
-from .disk import PER_DATASET, SPARE, block_size, reserve
-from .edit import edited
+from .disk import PER_DATASET, SPARE, block_size, edited, reserve
 from .layout import about, about_channel
 from .places import abandoned, mark, replace
 from .reader import Trace

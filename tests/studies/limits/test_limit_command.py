@@ -9,8 +9,7 @@ import pytest
 
 from loomfmu.cli import main
 from loomfmu.design import loom as design
-from loomfmu.studies.limits.boundary import ROWS
-from loomfmu.studies.limits.limits import POINTS
+from loomfmu.studies.limits.limits import POINTS, ROWS
 
 DEMO = str(Path(__file__).parents[3] / "sims" / "wl680_3600.toml")
 DAMPER = str(Path(__file__).parents[3] / "sims" / "damper.toml")
