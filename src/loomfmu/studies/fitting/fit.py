@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from itertools import combinations
 from pathlib import Path
 from typing import Any
@@ -22,35 +22,32 @@ from ...errors import LoomfmuError, listed, shown, suggestion
 from .. import rewritten
 from ..span import Span, set_twice, span_of, warnings_of
 from . import measured
-from .curves import Compared, Floats
-from .intervals import Fitted, Residuals, Shift, Sure, doubtful, sure
+from .curves import Compared
+from .intervals import Fitted, Sure, doubtful, sure
 from .measured import DISPLAY, Measured, offset_of
 from .search import LEAST_SQUARES, LOSSES, Search, settings
 
 HEADINGS = ("parameter", "fitted", "95 % interval", "in the scene")
+MORE = 10  # values than parameters, of each signal whose noise must be known
+UNTRUSTED = "not to be trusted"  # of an interval
+REACH = 2.0  # standard errors: what the residuals would not show
+LARGEST = 2.0 * math.pi  # offset that is worth a word [rad or s]: a revolution
+STRONG = 0.9  # correlation that is worth a word
 
 
 @dataclass(frozen=True, repr=False)
-class Fit:
+class Fit(Sure):
     """Parameters of a scene that come closest to a measurement.
 
-    It is false where a signal is hardly explained, or a parameter ended at an end of its range.
-    `correlations`, shape (p, p), are those of the parameters' errors, NaN for one at its bound. `curves` has
-    for each signal what was measured, what is computed there and the root mean square of the difference;
-    `residuals` and `shift` say whether these differences are independent, as the intervals assume: each
-    signal's, and all with an offset of the data, unless that is fitted. `notes` say what to be careful about.
+    It is false where a signal is hardly explained, or a parameter ended at an end of its range. `curves` has
+    for each signal what was measured, what is computed there and the root mean square of the difference.
     """
 
     scene: Scene
     data: Measured
-    parameters: tuple[Fitted, ...]
-    correlations: Floats = field(compare=False)
     curves: tuple[Compared, ...]
-    residuals: tuple[Residuals, ...]
-    shift: Shift | None
     loss: str
     runs: int
-    notes: tuple[str, ...]
     warnings: tuple[str, ...] = ()
 
     def __bool__(self) -> bool:
@@ -66,6 +63,11 @@ class Fit:
     def trusted(self) -> bool:
         """Return whether the intervals can be trusted: no test rejects independent residuals."""
         return all(each.trusted for each in self.parameters)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Cautions: residuals that are not noise, ends of ranges, correlations, coarse steps."""
+        return tuple(_cautions(self))
 
     @property
     def values(self) -> dict[str, Any]:
@@ -168,19 +170,14 @@ def fit(
         ended = search.found()
         known = sure(found, spans, ended, LOSSES[loss])
         warnings = warnings_of(spans, loom.evaluate().warnings)
-    notes = cautions(ended.curves, known, found.over)
     return Fit(
-        loom.scene,
-        found,
-        known.parameters,
-        known.correlations,
-        ended.curves,
-        known.residuals,
-        known.offset,
-        loss,
-        search.runs,
-        notes,
-        warnings,
+        **vars(known),
+        scene=loom.scene,
+        data=found,
+        curves=ended.curves,
+        loss=loss,
+        runs=search.runs,
+        warnings=warnings,
     )
 
 
@@ -206,43 +203,27 @@ def _check(spans: Sequence[Span], data: Measured, loss: str) -> None:
         )
 
 
-MORE = 10  # values than parameters, of each signal whose noise must be known
-UNTRUSTED = "not to be trusted"  # of an interval
-REACH = 2.0  # standard errors: what the residuals would not show
-LARGEST = 2.0 * math.pi  # offset that is worth a word [rad or s]: a revolution
-STRONG = 0.9  # correlation that is worth a word
-
-
-def cautions(curves: Sequence[Compared], found: Sure, over: str) -> tuple[str, ...]:
-    """Return cautions: residuals that are not noise, ends of ranges, correlations, coarse steps.
-
-    `over` is the axis of the data, "shaft_angle" or "time".
-    """
-    unexplained = [each for each in curves if not each.explained]
-    lines = [
-        f"{each.signal}: the fit {_explains(each.share)}; check the units and the rest of the scene"
-        for each in unexplained
-    ]
-    lines += [*_dependent(found, over)]
-    lines += [
-        f"the data do not determine {each.span.key}: its interval is wider than the range that was searched"
-        for each in found.parameters
-        if each.high - each.low > each.span.high - each.span.low
-    ]
+def _cautions(found: Fit) -> Iterator[str]:
+    unexplained = [each for each in found.curves if not each.explained]
+    for curve in unexplained:
+        yield f"{curve.signal}: the fit {_explains(curve.share)}; check the units and the rest of the scene"
+    yield from _dependent(found)
+    for each in found.parameters:
+        if each.high - each.low > each.span.high - each.span.low:
+            yield (
+                f"the data do not determine {each.span.key}: its interval is wider than the range that was"
+                " searched"
+            )
     remedy = "" if unexplained else ": widen it"
-    lines += [
-        f"{each.span.key} ended at {each.span.show(each.value)}, the end of its range{remedy}"
-        for each in found.parameters
-        if each.at_bound
-    ]
+    for each in found.parameters:
+        if each.at_bound:
+            yield f"{each.span.key} ended at {each.span.show(each.value)}, the end of its range{remedy}"
     for one, two in combinations(range(len(found.parameters)), 2):
         correlation = float(found.correlations[one, two])
         if abs(correlation) >= STRONG:
             names = listed(found.parameters[each].span.key for each in (one, two))
-            lines.append(
-                f"errors of {names} are correlated ({correlation:.3f}): the data barely tell them apart"
-            )
-    return (*lines, *(each.note for each in curves if each.note))
+            yield f"errors of {names} are correlated ({correlation:.3f}): the data barely tell them apart"
+    yield from (curve.note for curve in found.curves if curve.note)
 
 
 def _explains(share: float) -> str:
@@ -254,9 +235,9 @@ def _explains(share: float) -> str:
     return f"leaves {100.0 * share:.3g} % of the variation of the data unexplained"
 
 
-def _dependent(found: Sure, over: str) -> Iterator[str]:
+def _dependent(found: Fit) -> Iterator[str]:
     """Yield evidence against independent residuals, and the consequences."""
-    doubts = doubtful(found.residuals, found.offset)
+    doubts = doubtful(found.residuals, found.shift)
     for each in found.residuals:
         if each in doubts:
             yield (
@@ -267,22 +248,22 @@ def _dependent(found: Sure, over: str) -> Iterator[str]:
             )
         elif each.count < len(found.parameters) + MORE:
             yield f"{each.signal}: {each.count} values are too few to see whether residuals are independent"
-    if found.offset is None:
+    if found.shift is None:
         return
-    if found.offset in doubts:
-        size, error = (_offset(over, value) for value in (found.offset.size, REACH * found.offset.error))
+    if found.shift in doubts:
+        size, error = (_offset(found, value) for value in (found.shift.size, REACH * found.shift.error))
         yield (
             f"the residuals show an offset of the data, {size} +- {error} to be added to all places; the"
             f" intervals are {UNTRUSTED}: --offset fits it"
         )
         return
     for one in found.parameters:
-        if one.shift < min(REACH * found.offset.error, LARGEST):
+        if one.shift < min(REACH * found.shift.error, LARGEST):
             yield (
-                f"{one.span.key}: an offset of the data of {_offset(over, one.shift)} moves it to the end of"
+                f"{one.span.key}: an offset of the data of {_offset(found, one.shift)} moves it to the end of"
                 " its interval, and the residuals would not show it: --offset allows for it"
             )
 
 
-def _offset(over: str, value: float) -> str:
-    return units.show(float(f"{value:.2g}"), DISPLAY[over])
+def _offset(found: Fit, value: float) -> str:
+    return units.show(float(f"{value:.2g}"), DISPLAY[found.data.over])

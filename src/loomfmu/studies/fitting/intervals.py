@@ -5,7 +5,7 @@ Intervals assume that residuals are independent, so what a fit leaves of each si
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -159,15 +159,19 @@ class Fitted:
     shift: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Sure:
-    """The parameters with their intervals, the correlations of their errors, and what remains: each signal's
-    residuals, and how they speak of an offset of the data, None where that is fitted."""
+    """Fitted parameters, with all that says how sure they are.
+
+    `correlations`, shape (p, p), are those of the parameters' errors, NaN for one at its bound. `residuals`
+    and `shift` say whether what remains is independent, as the intervals assume: of each signal, and of all
+    with an offset of the data, None where that is fitted.
+    """
 
     parameters: tuple[Fitted, ...]
-    correlations: Floats
+    correlations: Floats = field(compare=False)
     residuals: tuple[Residuals, ...]
-    offset: Shift | None
+    shift: Shift | None
 
 
 def sure(data: Measured, spans: Sequence[Span], found: Found, loss: Loss) -> Sure:
