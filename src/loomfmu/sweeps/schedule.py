@@ -6,15 +6,19 @@ Batches are long enough to keep all workers busy and the scheduling process idle
 import os
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import closing, contextmanager
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from ..cosim.scenes.scene import Scene
 from ..errors import LoomfmuError, shown
-from .pools import Here, Pool, Processes, Task, WorkerDied
+from .pools import Here, Processes, Task, WorkerDied
 from .worker import Batch, Job, failed, run_rows
 
+if TYPE_CHECKING:
+    from .cluster import Cluster
+
+Pool: TypeAlias = "Here | Processes | Cluster"  # takes tasks, and gives back what became of them
 BATCH = 1.5  # s, what a batch should take: far above the cost of handing it over, little to lose
 SMALLEST = 50  # part of such a batch that the last ones still are: the workers end within its time
 GROWTH = 4  # of a batch over those before, until the time of a row is known well
@@ -147,24 +151,16 @@ def resumable(directory: Path, what: str) -> Iterator[None]:
         ) from None
 
 
-@contextmanager
-def local(scene: Scene, processes: int | None, rows: int) -> Iterator[Pool]:
+def local(scene: Scene, processes: int | None, rows: int) -> Pool:
     """This process where one is enough, unless an FMU may end it; else processes of this machine."""
-    workers = min(processes or _cores(), rows)
-    pool: Pool = Processes(workers) if workers > 1 or scene.unprotected else Here()
-    with closing(pool):
-        yield pool
+    # all cores that this process may use
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    workers = min(processes or cores, rows)
+    return Processes(workers) if workers > 1 or scene.unprotected else Here()
 
 
-@contextmanager
-def cluster(address: str) -> Iterator[Pool]:
+def cluster(address: str) -> Pool:
     """The workers of a dask scheduler."""
     from .cluster import Cluster
 
-    with closing(Cluster(address)) as pool:
-        yield pool
-
-
-def _cores() -> int:
-    """Cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return Cluster(address)
