@@ -96,17 +96,9 @@ class Trace(Signals):
 
     def blocks(self, signal: str, rows: int) -> Iterator[NDArray[Any]]:
         """The values of a signal, so many rows at a time: none are kept, however long the run was."""
-        with self._dataset(signal) as dataset:
+        with self._file.opened():  # once for all of them
             for start in range(0, self.rows, rows):
-                yield self._values(dataset, slice(start, min(start + rows, self.rows)))
-
-    def _values(self, dataset: Any, rows: slice) -> NDArray[Any]:
-        self._check_length(dataset)
-        try:
-            values = np.asarray(dataset[rows])
-        except (OSError, RuntimeError) as error:
-            raise LoomfmuError(f"{self.given}: {dataset.name} cannot be read ({error})") from None
-        return values.astype(bool) if dataset.attrs.get("dtype") == "bool" else values
+                yield self.read(signal, slice(start, start + rows))
 
     def _check_length(self, dataset: Any) -> None:
         if len(dataset) < self.rows:
@@ -118,7 +110,12 @@ class Trace(Signals):
         if signal in self._cache:
             return self._cache[signal][rows]
         with self._dataset(signal) as dataset:
-            return self._values(dataset, slice(*rows.indices(self.rows)))
+            self._check_length(dataset)
+            try:
+                values = np.asarray(dataset[slice(*rows.indices(self.rows))])
+            except (OSError, RuntimeError) as error:
+                raise LoomfmuError(f"{self.given}: {dataset.name} cannot be read ({error})") from None
+            return values.astype(bool) if dataset.attrs.get("dtype") == "bool" else values
 
     def __contains__(self, signal: object) -> bool:
         return signal in self._signals
