@@ -157,25 +157,8 @@ def test_pictures_are_written_and_repeat(arguments: list[str]) -> None:
         ([*SPEED, "--output", "limits.txt"], "limits.txt: use .csv for a table, or .svg, .png or .pdf"),
         ([*SPEED, "--output", "notes.csv"], "notes.csv: exists and is not a table of limits; --force"),
         (
-            ["limit", DEMO, "--vary", "shaft.speed", "--from", "9rpm", "--to", "3rpm"],
-            "shaft.speed: the range from 9",
-        ),
-        (
-            ["limit", DEMO, "--vary", "damper.spring_stiffness=1..20N/mm"],
-            "vary damper.spring_stiffness: '1..20N/mm': 1 has no unit; give both ends theirs",
-        ),
-        (
-            ["limit", DEMO, "--vary", "a=1..2", "--vary", "b", "--vary", "c"],
+            ["limit", DEMO, *["--vary", "a=1..2", "--vary", "b", "--vary", "c"]],
             "vary = ['a=1..2', 'b', 'c'] must be",
-        ),
-        (["limit", "none.toml", "--vary", "shaft.speed"], "none.toml: cannot be read"),
-        (
-            ["limit", DEMO, "--vary", "weft.speed=300rpm..900rpm"],
-            "weft.speed has no effect: set weft.follow_shaft = false",
-        ),
-        (
-            ["limit", DEMO, "--vary", "shaft.speed", "--rows", "4"],
-            "rows = 4 is how many values of a second variable are taken",
         ),
     ],
 )
