@@ -15,7 +15,7 @@ from ...cosim.scenes.settings import read_table
 from ...errors import LoomfmuError, listed, shown, suggestion
 from ...sweeps.axes import Range, flattened, grid_axis, range_of, whole
 from ...sweeps.header import HEAD, Header, check_by_scene, read, variables
-from ...sweeps.varied import Value, Varied, shown_unit
+from ...sweeps.varied import Keyed, Value, shown_unit
 
 WAYS = {"minimise": 1.0, "maximise": -1.0}  # what a goal is multiplied by to be made small
 KEYS = (*HEAD, *WAYS, "safety", "except", "ranges", "choices", "search")
@@ -25,17 +25,11 @@ MOST_GOALS = 3
 
 
 @dataclass(frozen=True)
-class Variable:
+class Variable(Keyed):
     """A variable of a study: in a `range` of real numbers, or among `options`."""
 
-    varied: Varied
     range: Range | None
     options: Sequence[Value] = ()
-
-    @property
-    def key(self) -> str:
-        """The key in the file."""
-        return self.varied.key
 
     @property
     def last(self) -> float:
