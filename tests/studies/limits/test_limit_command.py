@@ -70,6 +70,7 @@ def test_the_help_states_the_defaults(capsys: pytest.CaptureFixture[str]) -> Non
     said = " ".join(capsys.readouterr().out.split())
     assert f"values of the first that are tried first ({POINTS})" in said
     assert f"values of the second that are taken ({ROWS})" in said
+    assert "Exit status: 0 all claims hold in some range; 1 in none; 2 bad input" in said
 
 
 def test_a_wide_terminal_has_a_table(
