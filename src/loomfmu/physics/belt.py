@@ -61,15 +61,12 @@ def _knot_slope(index: int) -> float:
 
 
 def length_factor(clearance: float) -> float:
-    """Column length factor of the belt for a clearance in its guide, Table 3.
+    """Column length factor [1] of the belt for a clearance in its guide, Table 3.
 
     Monotone cubic (PCHIP) through the five published points; 1 (pinned at both ends) from 0.8 mm.
 
     Args:
         clearance: between belt and guide, not negative [m]
-
-    Returns:
-        length factor [1]
 
     >>> length_factor(0.3e-3), length_factor(2e-3)
     (0.8, 1.0)
@@ -93,15 +90,12 @@ def length_factor(clearance: float) -> float:
 
 
 def critical_force(free_length: float, factor: float, stiffness: float) -> float:
-    """Euler's critical load of the free section, `pi^2 EI / (mu l)^2`, equation (8).
+    """Euler's critical load of the free section [N], `pi^2 EI / (mu l)^2`, equation (8).
 
     Args:
         free_length: length l of the free section, positive [m]
         factor: column length factor mu [1]
         stiffness: bending stiffness EI [N m2]
-
-    Returns:
-        critical load [N]
 
     >>> round(critical_force(0.174, 0.8, 0.25), 1)
     127.3
@@ -111,7 +105,7 @@ def critical_force(free_length: float, factor: float, stiffness: float) -> float
 
 
 def margin(free_length: float, axial_force: float, factor: float, stiffness: float) -> float:
-    """Stability margin `1 - F / F_cr`, F_cr from (8): finite for every load, negative once the belt buckles.
+    """Stability margin `1 - F / F_cr` [1], F_cr from (8): finite for every load, negative once it buckles.
 
     It is 1 while the belt is inside its guide and above 1 under tension.
 
@@ -120,9 +114,6 @@ def margin(free_length: float, axial_force: float, factor: float, stiffness: flo
         axial_force: compression F of the belt; negative for tension [N]
         factor: column length factor [1]
         stiffness: bending stiffness [N m2]
-
-    Returns:
-        margin [1]
 
     >>> margin(-0.1, 50.0, 0.8, 0.25)
     1.0
@@ -134,19 +125,17 @@ def margin(free_length: float, axial_force: float, factor: float, stiffness: flo
 
 
 def weft_load(tension: float, velocity: float, taker: bool) -> float:
-    """Compression of the belt by the weft that its head carries, F_z of equation (12) with its direction.
+    """Compression of the belt by the weft that its head carries [N]: F_z of (12) with its direction.
 
     The weft pulls back against the motion of the head. A giver carries it on the way in, pushed by its belt,
     and returns empty; a taker goes in empty and draws the weft out, pulled by its belt. The source describes
-    both in section 1, but counts the tension as compression for either head.
+    both in section 1, but counts the tension as compression for either head. It is negative where the weft
+    relieves the belt.
 
     Args:
         tension: of the weft [N]
         velocity: of the head, positive on its way in [m/s]
         taker: whether the head takes the weft over, instead of bringing it
-
-    Returns:
-        compression [N], negative where the weft relieves the belt
 
     >>> weft_load(2.0, 10.0, False), weft_load(2.0, -10.0, False)
     (2.0, 0.0)
@@ -161,7 +150,7 @@ def weft_load(tension: float, velocity: float, taker: bool) -> float:
 def speed_limit(
     free_length: float, slope: float, factor: float, stiffness: float, mass: float, tension: float
 ) -> float:
-    """Shaft speed at which the belt would just buckle at this angle, equations (9) and (12).
+    """Shaft speed [rad/s] at which the belt would just buckle at this angle, equations (9) and (12).
 
     `sqrt((F_cr - F_z) / (m s''))`; without tension `(pi / (mu l)) sqrt(EI / (m s''))`. It is
     `NO_LIMIT` inside the guide and where the head does not push the belt, and 0 where the weft tension
@@ -174,9 +163,6 @@ def speed_limit(
         stiffness: bending stiffness [N m2]
         mass: of the head with the rigid section of the belt [kg]
         tension: compression by the weft F_z [N]; negative where the weft relieves the belt
-
-    Returns:
-        shaft speed [rad/s]
     """
     if free_length <= 0.0 or slope <= 0.0:
         return NO_LIMIT
@@ -224,17 +210,15 @@ def elliptic_slope(modulus: float) -> float:
 
 
 def elastica_deflection(load_ratio: float, free_length: float) -> float:
-    """Largest deflection of a buckled pinned column, from the exact elastica instead of (11).
+    """Largest deflection of a buckled pinned column [m], from the exact elastica instead of (11).
 
     `F / F_cr = (2 K(k) / pi)^2` gives the modulus k by bisection, then `deflection / l = k / K(k)`.
-    Erratum: the printed (11) gives half of it, 4.2 mm, where the paper's own result is 8 mm.
+    Erratum: the printed (11) gives half of it, 4.2 mm, where the paper's own result is 8 mm. It is 0 up to
+    the critical load.
 
     Args:
         load_ratio: compression over critical load [1]
         free_length: length l of the free section [m]
-
-    Returns:
-        deflection [m], 0 up to the critical load
 
     >>> round(elastica_deflection((686 / 685) ** 2, 0.174) * 1000, 1)
     8.4
@@ -264,13 +248,12 @@ LARGEST_BEND = 0.4031401897056502
 
 
 def bent_load_ratio(bend: float) -> float:
-    """Load ratio at which a pinned column first has a deflection: `elastica_deflection` inverted.
+    """Load ratio [1] at which a pinned column first has a deflection: `elastica_deflection` inverted.
+
+    It is 1 without a deflection, and `inf` from 0.4031 on, which no load gives.
 
     Args:
         bend: deflection over the length of the column [1]
-
-    Returns:
-        load ratio [1]: 1 without a deflection; `inf` from 0.4031 on, which no load gives
 
     >>> round(bent_load_ratio(8.4e-3 / 0.174), 4)  # (686 / 685)^2 = 1.0029
     1.0029

@@ -291,14 +291,11 @@ def by_modes(
 
 
 def end_shortening(over: float, ends: Ends) -> tuple[float, float, float]:
-    """Shortening by the end shapes to the second order, and its rates while L and their own rates stay.
+    """Shortening by the end shapes to the second order [m], and its rates while L and their own rates stay.
 
     Args:
         over: 1 / L [1/m]
         ends: amplitudes and their rates
-
-    Returns:
-        shortening [m], rate [m/s], second rate [m/s2]
     """
     by_guide = over * (SQUARE * ends.guide + CROSS * ends.head)
     by_head = over * (SQUARE * ends.head + CROSS * ends.guide)

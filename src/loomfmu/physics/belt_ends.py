@@ -322,15 +322,14 @@ def turning(turn_by_length: float, free: FreeEnds) -> tuple[float, float]:
 def end_bending(
     length: float, stiffness: float, guide_growth: float, head_growth: float, d: float, k: float
 ) -> tuple[float, float]:
-    """Bending energy of the end shapes beyond those of the bow, and its rate by L.
+    """Bending energy of the end shapes beyond those of the bow [J], and its rate by L [N].
+
+    The energy is `3 B / L^3 [OWN (d^2 + k^2) + 2 OTHER d k]`.
 
     Args:
         length, stiffness: L [m], B [N m2]
         guide_growth, head_growth: of `turning` [1]
         d, k: of `end_motion` [m]
-
-    Returns:
-        energy `3 B / L^3 [OWN (d^2 + k^2) + 2 OTHER d k]` [J], its rate [N]
     """
     moment = 6.0 * stiffness / (length * length * length)
     energy = 0.5 * moment * (OWN * (d * d + k * k) + 2.0 * OTHER * d * k)

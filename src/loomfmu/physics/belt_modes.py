@@ -145,7 +145,7 @@ def harmonics(
 
 
 def bow_mode(number: int, bow: Bow, length: float, cosine: float, sine: float) -> tuple[float, float, float]:
-    """Moment of the belt's own bow on a mode, over its bending stiffness, and its rates by the free length.
+    """Moment of the belt's own bow on a mode, over its stiffness [1/m2], and two rates by the free length.
 
     `int bow'' (sin(n pi X / L))'' dX` for a belt that is crooked as `height sin(pi X / half_wave)` from the
     head on, and takes its bow along.
@@ -155,9 +155,6 @@ def bow_mode(number: int, bow: Bow, length: float, cosine: float, sine: float) -
         bow: of the belt
         length: L of the free part [m]
         cosine, sine: of `pi L / half_wave`
-
-    Returns:
-        moment [1/m2], its rate [1/m3], its second rate [1/m4]
 
     >>> from math import pi
     >>> round(bow_mode(1, Bow(1, 1.0, 1.0), 1.0, -1.0, 0.0)[0] - pi**4 / 2, 12)

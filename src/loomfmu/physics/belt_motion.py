@@ -43,7 +43,7 @@ def ends_at(belt: Belt, at: Instant, contact: int, q: list[float], v: list[float
 def accelerations(
     belt: Belt, at: Instant, contact: int, q: list[float], v: list[float]
 ) -> tuple[list[float], float]:
-    """Second rates of the modes, and the compression P0 of the belt at the head.
+    """Second rates of the modes [m/s2], and the compression P0 of the belt at the head [N].
 
         M q'' = 2 rho V G q' + [rho A (G + J) + rho V^2/L H] q - c (L q'/2 - V G q) + B (f + b) + e
                 + P0 g
@@ -55,9 +55,6 @@ def accelerations(
 
     Args:
         belt .. v: as for `ends_at`
-
-    Returns:
-        second rates [m/s2], compression at the head [N]
     """
     length = at.length
     stiffness = belt.stiffness
@@ -106,7 +103,7 @@ def accelerations(
 def energy_and_powers(
     belt: Belt, at: Instant, contact: int, q: list[float], v: list[float], a: list[float], load: float
 ) -> tuple[float, float, float, float]:
-    """Energy of the motion across the belt, and the powers that change it.
+    """Energy of the motion across the belt [J], and powers of the compression, at the guide, and lost [W].
 
     The energy is that of u_t, of bending against the straight belt, and of the lag of the head. It grows by
     the compression's work on the shortening, and by what the guide exit, an end that moves along the belt,
@@ -116,9 +113,6 @@ def energy_and_powers(
         belt .. v: as for `ends_at`
         a: second rates of the modes [m/s2]
         load: compression at the head P0 [N]
-
-    Returns:
-        energy [J], power of the compression, power at the guide, power lost by damping [W]
     """
     velocity = at.velocity
     x = carried_along(q)

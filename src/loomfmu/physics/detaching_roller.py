@@ -29,15 +29,12 @@ def division_of(shaft_angle: float) -> float:
 def top_roller_torque(
     acceleration: float, roller_radius: float, top_radius: float, top_inertia: float
 ) -> float:
-    """Torque M12 on the roller from the top roller's inertia, `J2 (r1 / r2)^2 e`, equation (11).
+    """Torque M12 on the roller from the top roller's inertia [N m], `J2 (r1 / r2)^2 e`, equation (11).
 
     Args:
         acceleration: of the detaching roller e [rad/s2]
         roller_radius, top_radius: r1 and r2 [m]
         top_inertia: J2 [kg m2]
-
-    Returns:
-        torque [N m]
 
     Erratum: the source gives its inertias in kg mm2; the numbers are in kg m2.
 
@@ -50,7 +47,7 @@ def top_roller_torque(
 
 
 def drafting_force(fibre_share: float, friction: float, nip_load: float, resistance: float) -> float:
-    """Force that drafts the fibres out of the fringe, `F = n / (2 n_max) (mu P - f1)`, equation (19).
+    """Force that drafts the fibres out of the fringe [N], `F = n / (2 n_max) (mu P - f1)`, equation (19).
 
     With the largest number of fibres it is half of what the nip can hold.
 
@@ -59,9 +56,6 @@ def drafting_force(fibre_share: float, friction: float, nip_load: float, resista
         friction: static, between fibres and roller, mu [1]
         nip_load: load of the top roller P [N]
         resistance: f1 of the top roller on the web, its torque M12 over r1 [N]
-
-    Returns:
-        force [N]
 
     Valid while `mu P > f1`: beyond that the nip holds nothing.
 
@@ -123,7 +117,7 @@ def assumed_motion(division: float) -> tuple[float, float]:
 
 
 def assumed_fibre_share(division: float) -> float:
-    """Fibres in the nip over their largest number, an assumption: the measured curve is in a lost figure.
+    """Fibres in the nip over their largest number [1], an assumption: the measured curve is in a lost figure.
 
     The source publishes 0 up to 18 and from 30, and the largest number at 23.8. The rise is a cubic with
     level ends. The fall is `((30 - d) / 6.2)^3`: 0.249 at 26.1, where the valleys of Table 2 at three speeds
@@ -131,9 +125,6 @@ def assumed_fibre_share(division: float) -> float:
 
     Args:
         division: d of the nip, 0 to 40 [1]
-
-    Returns:
-        share [1]
 
     >>> [round(assumed_fibre_share(division), 12) for division in (18.0, 20.9, 23.8, 30.0)]
     [0.0, 0.5, 1.0, 0.0]
