@@ -81,17 +81,6 @@ def test_running_yarn_over_eyes_by_its_momentum(before, density, speed, unwindin
     )
 
 
-@given(st.floats(-50.0, 50.0), st.floats(-5e3, 5e3), st.floats(0.1, 5.0))
-def test_momentum_alone(speed, acceleration, length):
-    """Without brake, eyes and drag the head supplies the yarn's momentum: d(q L v)/dt, as L' = v."""
-    density = 30e-6
-    limit, _rate = drawing_limit(1.0, 0.0, density, density, 0.0, 0.0, speed, acceleration)
-    exact = density * (MP.mpf(speed) ** 2 + MP.mpf(length) * acceleration)
-    found = limit + moving_load(length, speed, acceleration, density, 0.0)
-    # a few roundings of both terms, and what lies below the smallest floats
-    assert abs(found - exact) <= 4e-16 * density * (speed**2 + length * abs(acceleration)) + 1e-300
-
-
 @given(st.floats(-50.0, 50.0), st.floats(-5e3, 5e3), st.floats(-1e6, 1e6), st.floats(0.1, 5.0))
 def test_rates_of_limit_and_load(speed, acceleration, jerk, length):
     def moved(t):
