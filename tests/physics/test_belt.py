@@ -31,6 +31,7 @@ def test_length_factor_is_the_monotone_cubic_of_the_published_points():
     for at in np.linspace(0.0, 0.8e-3, 1601):
         # both evaluate the same cubic, in different forms: rounding
         assert length_factor(at) == pytest.approx(float(monotone(at)), abs=1e-14)
+    assert length_factor(0.85e-3) == 1.0  # pinned
 
 
 @pytest.mark.parametrize("name", ALL_MACHINES)
