@@ -2,6 +2,9 @@
 
 Source: Zhu and Zhou, J. Zhejiang Sci-Tech Univ. 45 (2021) 497, sections 3 and 4, equations (7) to (12),
 Tables 2 to 7.
+
+Lengths l of the free section are negative inside the guide [m], mu is the column length factor [1], EI the
+bending stiffness [N m2], everywhere the arguments `free_length`, `factor` and `stiffness`.
 """
 
 from math import fabs, inf, pi, sqrt
@@ -92,11 +95,6 @@ def length_factor(clearance: float) -> float:
 def critical_force(free_length: float, factor: float, stiffness: float) -> float:
     """Euler's critical load of the free section [N], `pi^2 EI / (mu l)^2`, equation (8).
 
-    Args:
-        free_length: length l of the free section, positive [m]
-        factor: column length factor mu [1]
-        stiffness: bending stiffness EI [N m2]
-
     >>> round(critical_force(0.174, 0.8, 0.25), 1)
     127.3
     """
@@ -110,10 +108,7 @@ def margin(free_length: float, axial_force: float, factor: float, stiffness: flo
     It is 1 while the belt is inside its guide and above 1 under tension.
 
     Args:
-        free_length: length of the free section; negative inside the guide [m]
         axial_force: compression F of the belt; negative for tension [N]
-        factor: column length factor [1]
-        stiffness: bending stiffness [N m2]
 
     >>> margin(-0.1, 50.0, 0.8, 0.25)
     1.0
@@ -157,10 +152,7 @@ def speed_limit(
     alone buckles it.
 
     Args:
-        free_length: length l of the free section [m]
         slope: second derivative s'' of the travel by the shaft angle [m]
-        factor: column length factor [1]
-        stiffness: bending stiffness [N m2]
         mass: of the head with the rigid section of the belt [kg]
         tension: compression by the weft F_z [N]; negative where the weft relieves the belt
     """

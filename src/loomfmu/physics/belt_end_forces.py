@@ -77,9 +77,7 @@ def end_coupling(
     With them are those of the line between guide and head, see `tilt_forces`.
 
     Args:
-        belt, at, ends: the belt, an instant, and its end shapes then
         thrown: `rho V^2 / L` [kg/s2]
-        q, v: modes and their rates [m, m/s]
     """
     twice = 2.0 * belt.mass * at.velocity
     pushed = belt.mass * at.acceleration

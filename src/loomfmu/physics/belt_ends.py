@@ -254,9 +254,7 @@ def end_motion(
     Args:
         free: of `end_amplitudes`
         velocity, acceleration: rates V and A of the length [m/s, m/s2]
-        clamped: which ends are clamped
         turn, turn_by_length: slope at the guide times L [m], and its rate by L [1]
-        q, v: modes and their rates [m, m/s]
     """
     square = velocity * velocity
     if clamped == 0:

@@ -51,7 +51,6 @@ def weighed(first: float, even: float, square: float, a: list[float]) -> list[fl
         first: constant of the diagonal: 0 for x, 1/4 for x^2
         even: share of the terms with even m + n: 0 for x, 1 for x^2
         square: share of `m^2` in the diagonal: pi^2/4 for x, pi^2/6 for x^2
-        a: modes
 
     >>> weighed(0.25, 1.0, 0.0, [0.0, 9.0, 0.0, 0.0, 0.0, 0.0])[:2]
     [-20.0, 2.25]
@@ -151,8 +150,6 @@ def bow_mode(number: int, bow: Bow, length: float, cosine: float, sine: float) -
     head on, and takes its bow along.
 
     Args:
-        number: n of the mode
-        bow: of the belt
         length: L of the free part [m]
         cosine, sine: of `pi L / half_wave`
 

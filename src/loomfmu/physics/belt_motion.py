@@ -27,13 +27,7 @@ def free_turn(belt: Belt, length: float) -> float:
 
 
 def ends_at(belt: Belt, at: Instant, contact: int, q: list[float], v: list[float]) -> Ends:
-    """The end shapes at an instant.
-
-    Args:
-        belt, at: the belt, and an instant of it
-        contact: side of its guide on which it leans, 1 or -1; 0 while it turns freely there
-        q, v: modes and their rates [m, m/s]
-    """
+    """The end shapes at an instant."""
     clamped = (1 if contact != 0 else 0) + (2 if belt.guided else 0)
     turn = contact * free_turn(belt, at.length)
     by_length = contact * belt.clearance / belt.guide_length
@@ -52,9 +46,6 @@ def accelerations(
     G is `carried_along`, J and H are `weighed` by x and x^2, f and g are of `bent_belt`, b is of
     `bow_forces`, e is of `end_coupling` and the bending of the end shapes; S is the shortening, by which the
     head lags behind its drive.
-
-    Args:
-        belt .. v: as for `ends_at`
     """
     length = at.length
     stiffness = belt.stiffness
@@ -110,7 +101,6 @@ def energy_and_powers(
     puts in: `V [d/dt(dT/dV) - dT/dL + dU/dL - P0 dS/dL]`, and the inertia of the end shapes.
 
     Args:
-        belt .. v: as for `ends_at`
         a: second rates of the modes [m/s2]
         load: compression at the head P0 [N]
     """

@@ -2,6 +2,9 @@
 
 Source: Zhu and Zhou, "Restraint load characteristics of rapier loom carbon fiber belt wrapped rapier
 wheel", Light Industry Machinery (2021) no. 5, 20, sections 2 and 3, equations (1) to (8), Tables 1 to 3.
+
+D is the bottom `diameter` of the rapier wheel [m], c the `clearance` between block and belt, positive [m],
+and EI the bending `stiffness` of the belt [N m2].
 """
 
 from math import sqrt
@@ -29,10 +32,6 @@ def lever_arm(diameter: float, clearance: float) -> float:
     A cantilever's deflection over its end slope, `2 a / 3`, is set equal to the chord that the clearance
     cuts off, `2 sqrt((D/2 + c)^2 - (D/2)^2)`, (5) and (6).
 
-    Args:
-        diameter: bottom diameter D of the rapier wheel [m]
-        clearance: c between block and belt, positive [m]
-
     Valid while the end slope `a / D` is small: the source replaces its tangent, at 0.2 1.4 % larger, by the
     angle.
 
@@ -45,10 +44,6 @@ def lever_arm(diameter: float, clearance: float) -> float:
 def bending_moment(stiffness: float, diameter: float) -> float:
     """Moment that bends the belt to the curvature of the wheel [N m], `M = EI / rho = 2 EI / D`, (3).
 
-    Args:
-        stiffness: bending stiffness EI [N m2]
-        diameter: bottom diameter D of the rapier wheel [m]
-
     >>> bending_moment(0.25, 0.4)
     1.25
     """
@@ -60,11 +55,6 @@ def restraint_load(stiffness: float, diameter: float, clearance: float) -> float
 
     It does not depend on the wrap angle. Erratum: Table 3 prints 54.81 N for 430.0 mm and 0.1 mm, where the
     equation gives 59.10 N.
-
-    Args:
-        stiffness: bending stiffness EI [N m2]
-        diameter: bottom diameter D of the rapier wheel [m]
-        clearance: c between block and belt, positive [m]
 
     >>> round(restraint_load(0.25, 0.3955, 0.3e-3), 2)
     38.67
@@ -79,7 +69,6 @@ def bending_strain(thickness: float, diameter: float) -> float:
 
     Args:
         thickness: t of the belt [m]
-        diameter: bottom diameter D of the rapier wheel [m]
 
     >>> round(100 * bending_strain(1.35e-3, 0.397), 3)  # per cent
     0.339

@@ -95,10 +95,7 @@ def bulge_for(
     Args:
         work: of the torques over the step [J]
         start, rise: of these torques [N m]
-        velocity: at the start of the step [rad/s]
         net, net_rise: net torque at the start of the step, and the rise of the whole load [N m]
-        duration: of the step [s]
-        inertia, slope: see `driven_motion`
 
     >>> bulge_for(44.0, 3.0, 2.0, 5.0, 0.0, 0.0, 2.0, 1e300, 0.0)  # 4 N m over 10 rad, and 4 J more
     0.4

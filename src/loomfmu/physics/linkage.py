@@ -179,11 +179,8 @@ def weft_motion(
 
     Args:
         theta: crank angle, shaft angle plus phase [rad]
-        rocker, cone: the spherical linkage, see `spherical_rocker` [rad]
         offset: angle between the rocker's arms BC and DC [rad]
         planar: whether a four-bar follows; otherwise the rocker itself is the sector gear
-        crank, coupler, output, pivot_x, pivot_y: the four-bar, see `four_bar` [m]
-        assembly: of the four-bar, +1 or -1
     """
     alpha, first, second = spherical_rocker(theta, rocker, cone)
     if not planar:

@@ -2,6 +2,10 @@
 
 Source: Korolev, thesis on rotary dobbies (Moscow), section 3.6.1, equations (3.30) to (3.48), in the
 corrected form.
+
+Symbols: I the `inertia` of a pawl [kg m2], b and c its `length` and `width` [m], T the `span` of shaft angle
+that an engagement takes [rad], phi0 the whole `turn` of the pawl [rad]; P the `force` of its spring at the
+end of the turn, its preload [N], C the spring's `stiffness` [N/m], R its lever `arm` [m].
 """
 
 from math import asin, cos, pi, sin, sqrt
@@ -17,7 +21,6 @@ def pawl_inertia(mass: float, length: float, width: float) -> float:
 
     Args:
         mass: M [kg]
-        length, width: b and c [m]
 
     >>> round(1e6 * pawl_inertia(0.170, 0.16, 0.03), 1)
     375.4
@@ -29,7 +32,6 @@ def pawl_turn(length: float, width: float, rest_share: float) -> float:
     """Turn of a pawl from one disc to the other [rad], `phi0 = (c + c0) / b`, equation (3.30).
 
     Args:
-        length, width: b and c [m]
         rest_share: c0 / c, share of its width that stays outside the slot [1]
 
     >>> round(pawl_turn(0.16, 0.03, 0.15), 3)
@@ -46,8 +48,6 @@ def engagement(x: float, span: float, turn: float) -> tuple[float, float, float]
 
     Args:
         x: shaft angle since the engagement began [rad]
-        span: shaft angle T that it takes [rad]
-        turn: whole turn phi0 [rad]
 
     >>> engagement(0.0, 1.3, 0.2), engagement(1.3, 1.3, 0.2)[0]
     ((0.0, 0.0, 0.0), 0.2)
@@ -70,9 +70,6 @@ def largest_bend(span: float, turn: float) -> float:
 
     It is the acceleration at a shaft speed of 1 rad/s. Erratum: its value is printed as 0.32.
 
-    Args:
-        span, turn: T and phi0 [rad]
-
     >>> from math import radians
     >>> round(largest_bend(radians(75), radians(12)), 3)
     0.768
@@ -87,10 +84,6 @@ def spring_torque(turned: float, turn: float, force: float, stiffness: float, ar
 
     Args:
         turned: angle phi that the pawl has turned [rad]
-        turn: whole turn phi0 [rad]
-        force: of the spring at the end of the turn, its preload P [N]
-        stiffness: of the spring C [N/m]
-        arm: lever arm R [m]
 
     >>> spring_torque(0.25, 0.25, 20.0, 2500.0, 0.05), spring_torque(0.0, 0.25, 20.0, 2500.0, 0.05)
     (1.0, 2.5625)
@@ -106,11 +99,6 @@ def torque_speed_limit(
     The least of `sqrt(M / (I phi''))`, from the condition before (3.35), with M from `spring_torque` and
     phi'' from `engagement`; found to rounding by bisection of its derivative, between the crest of phi'' and
     the middle. With a stiffness of 0 it is at the crest: the source's `sqrt(P R / (I bend))`.
-
-    Args:
-        inertia: I [kg m2]
-        span: shaft angle T of the engagement [rad]
-        turn, force, stiffness, arm: as for `spring_torque`
 
     >>> from math import radians
     >>> round(torque_speed_limit(375.4e-6, radians(75), radians(12), 20.0, 0.0, 0.05) * 30 / pi)
@@ -135,12 +123,8 @@ def release_time(inertia: float, turn: float, force: float, stiffness: float, ar
     """Time in which the spring moves the pawl over from rest [s], (3.38) to (3.47) with a preload.
 
     `I phi'' = M` with M from `spring_torque`: `T_f = acos(d / (phi0 + d)) / k`, `d = P / (C R)`,
-    `k^2 = C R^2 / I`. Without preload it is a quarter of a period, `pi / (2 k)`, independent of the turn.
-    Erratum: the source divides by k^2 and finds 0.001 s.
-
-    Args:
-        inertia: I [kg m2]
-        turn, force, stiffness, arm: as for `spring_torque`; the stiffness is positive
+    `k^2 = C R^2 / I`, C positive. Without preload it is a quarter of a period, `pi / (2 k)`, independent of
+    the turn. Erratum: the source divides by k^2 and finds 0.001 s.
 
     >>> round(1e3 * release_time(375.4e-6, 0.2156, 0.0, 2500.0, 0.05), 2)  # as in the source
     12.17

@@ -99,7 +99,6 @@ def rod_margin(middle: float, half_swing: float, arm: float, rod: float, height:
 
     Args:
         middle, half_swing: angle of the arm in the middle of its swing, half the swing [rad]
-        arm, rod, height: as for `reed_motion` [m]
 
     >>> rod_margin(0.5 * pi, 0.1, 1.0, 0.5, 1.2) > 0.0, rod_margin(0.5 * pi, 0.1, 1.0, 0.1, 1.2) > 0.0
     (True, False)

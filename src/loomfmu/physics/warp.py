@@ -4,6 +4,10 @@ Source: Korolev, thesis on rotary dobbies (Moscow), sections 3.5 and 5.1, equati
 the law after Kragelsky in the form that (3.29) solves: `F' + r F = b (x' + n x)`. Over a step the extension
 is a polynomial in the share u of the step, and so is the right side. The force follows in closed form from
 the moments of a fading memory, which are computed without cancellation for every rate and step.
+
+Symbols: the eye is at the `height` y above the line from the fell of the cloth to the back rest [m], l1 and
+l2 are its distances from these along the line, `front` and `back` [m]; b is the `stiffness` [N/m], n the
+`creep` and r the `relaxation` [1/s] of the law.
 """
 
 from math import exp, fabs, sqrt
@@ -15,10 +19,6 @@ def eye_pull(height: float, front: float, back: float) -> float:
     """Share of its tension [1] with which a thread pulls its heald eye back: sum of the sines of its parts.
 
     It is also the derivative of the extension by the height of the eye. It has the sign of the height.
-
-    Args:
-        height: of the eye above the line from the fell of the cloth to the back rest [m]
-        front, back: distances of the eye from the fell and from the back rest, along that line [m]
 
     >>> round(eye_pull(0.3, 0.4, 0.4), 12)
     1.2
@@ -48,10 +48,6 @@ def thread_extension(
 
     Each part is computed as `y^2 / (sqrt(l^2 + y^2) + l)`, so nothing cancels in a nearly closed shed.
 
-    Args:
-        height, velocity, acceleration: y of the eye and its rates [m, m/s, m/s2]
-        front, back: l1 and l2 as for `eye_pull` [m]
-
     >>> [round(each, 12) for each in thread_extension(0.3, 1.0, 0.0, 0.4, 0.4)]
     [0.2, 1.2, 2.56]
     """
@@ -75,8 +71,6 @@ def constant_rate_force(time: float, rate: float, stiffness: float, creep: float
     Args:
         time: t since the start [s]
         rate: of the extension v [m/s]
-        stiffness: b [N/m]
-        creep, relaxation: n and r [1/s], r not zero
 
     >>> constant_rate_force(2.0, 0.001, 67.0, 5.0, 5.0)  # n = r: a spring, b x
     0.134
@@ -133,7 +127,6 @@ def thread_drive(
     The extension at both ends is exact, so rounding does not add up over many steps.
 
     Args:
-        stiffness: b [N/m]
         creep: n times the duration of the step [1]
         start, end: extension at both ends [m]
         a0 .. a3: its second derivative by u, as from `joined` [m]
@@ -220,7 +213,6 @@ def thread_locate(
     Args:
         turn: True for the extreme, False for the level
         level: of the force [N]
-        force .. p: as for `thread_force`
         low, high: bracket of u; the derivative, or force minus level, changes sign between them
 
     >>> round(thread_locate(False, 2.0, 1.0, 0.0, [2.0, 0.0, 0.0, 0.0, 0.0, 0.0], 0.0, 1.0), 12)

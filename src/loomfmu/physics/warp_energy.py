@@ -16,8 +16,6 @@ def thread_energy(
     Args:
         force: F above the pretension [N]
         extension: x [m]
-        stiffness: b [N/m]
-        creep, relaxation: n and r [1/s]
 
     >>> thread_energy(2.0, 0.5, 4.0, 3.0, 3.0)  # n = r: a spring with F = b x takes nothing
     (0.5, 0.0)
@@ -43,7 +41,6 @@ def thread_power(
 
     Args:
         pretension, force: T0 and F there [N]
-        decay, p: as for `thread_force`
         rate, second: rate of the extension by u at the start, and its second rate as from `joined` [m]
         share: u [1]
 

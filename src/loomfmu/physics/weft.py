@@ -8,6 +8,9 @@ more yarn through. With F = EA (L / N - 1) and the limit H of `drawing_limit`
 
 so F' is continuous, brake and yarn never chatter, and each of the two branches has a closed form: N is
 constant while the brake holds, and F relaxes towards H while it lets yarn through.
+
+Symbols: v and v' are `speed` and `acceleration` of the yarn [m/s, m/s2], q its `density` [kg/m], L its
+`length` [m], EA its `stiffness` [N].
 """
 
 from math import exp, fabs, pi, sqrt
@@ -75,9 +78,7 @@ def drawing_limit(
         gain: g of all eyes, from `capstan_gain` [1]
         supply: tension T0 at the package [N]
         unwound: m, the yarn's mass per length times the factor for its balloon [kg/m]
-        density: q of the yarn [kg/m]
         brake, brake_rate: force B of the brake and its rate [N, N/s]
-        speed, acceleration: v and v' of the yarn [m/s, m/s2]
 
     >>> drawing_limit(2.0, 0.5, 0.01, 0.01, 1.0, 3.0, 10.0, 100.0)
     (4.0, 26.0)
@@ -140,11 +141,6 @@ def snatch_tension(stiffness: float, density: float, speed: float) -> float:
     A wave runs along the yarn at `c = sqrt(EA / q)` and leaves it with the strain `v / c`; the tension stays
     until the wave is back.
 
-    Args:
-        stiffness: EA [N]
-        density: q of the yarn [kg/m]
-        speed: v of the end [m/s]
-
     >>> round(snatch_tension(75.0, 3e-5, 20.0), 12)
     0.948683298051
     """
@@ -155,9 +151,6 @@ def moving_load(length: float, speed: float, acceleration: float, density: float
     """Return the tension that inertia and drag of the moving yarn add [N], `q L a + k L v^2`.
 
     Args:
-        length: L [m]
-        speed, acceleration: v and v' of the yarn [m/s, m/s2]
-        density: q of the yarn [kg/m]
         drag: k, from `drag_per_length` [kg/m2]
 
     >>> moving_load(2.0, 3.0, 10.0, 0.5, 1.0)

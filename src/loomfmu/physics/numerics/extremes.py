@@ -68,12 +68,7 @@ def lowest_by_two_rates(
     """Lowest value of a signal so far, on the quintic between samples: its second rate is known as well.
 
     The quintic is off by `h^6 s'''''' / 46080`. It is searched in eighths of the step, each for one turn.
-
-    Args:
-        lowest: lowest value up to the last sample
-        step: time, or whatever the rates are taken by, from the last sample to this one
-        start, start_rate, start_second: value and rates at the last sample
-        end, end_rate, end_second: the same at this one
+    Arguments as for `lowest_so_far`, with second rates.
 
     (x - 1)^4 from 0 to 2:
 

@@ -6,6 +6,8 @@ speeds up in between. Source: Korolev, thesis on rotary dobbies (Moscow), sectio
 which the printed (3.7), (3.13), (3.22) and (3.24) do not.
 
 All four laws are symmetric, `S(2 pi - x) = 2 pi - S(x)`, so each is written for half a turn.
+
+Arguments: x, the shaft angle from the slow point [rad], and the `reduction` z of the speed there, 0 to 1 [1].
 """
 
 from math import asin, cos, pi, sin, sqrt
@@ -20,10 +22,6 @@ SLOPED_SINE = 4
 
 def harmonic_ends(x: float, reduction: float) -> tuple[float, float, float]:
     """S [rad], S', S'' [1] of harmonic ends with constant speed between, (3.1) to (3.6), `0 <= x <= pi`.
-
-    Args:
-        x: shaft angle from the slow point [rad]
-        reduction: z, relative speed reduction at the slow point [1]
 
     >>> round(max(harmonic_ends(x / 100, 0.7)[2] for x in range(315)), 3)  # the source's figure
     1.6
@@ -123,8 +121,6 @@ def rotor_law(law: int, x: float, reduction: float) -> tuple[float, float, float
 
     Args:
         law: 1 uniform, 2 harmonic ends, 3 sloped line, 4 sloped sine
-        x: shaft angle from the slow point [rad]
-        reduction: relative speed reduction at the slow point, 0 to 1 [1]
 
     >>> [round(rotor_law(law, 2 * pi, 0.7)[0] - 2 * pi, 12) for law in (1, 2, 3, 4)]
     [0.0, 0.0, 0.0, 0.0]
@@ -143,7 +139,6 @@ def dwell_angle(law: int, reduction: float, tolerance: float) -> float:
     kept inside a bracket.
 
     Args:
-        law, reduction: as for `rotor_law`
         tolerance: share of the stroke, 0 to 1/2 [1]
 
     >>> from math import degrees
@@ -173,9 +168,6 @@ def highest_rates(law: int, reduction: float) -> tuple[float, float, float]:
 
     The speed is highest at `x = pi`, the acceleration at the crest of an end piece, and the jerk at the slow
     point.
-
-    Args:
-        law, reduction: as for `rotor_law`
 
     >>> [round(rate, 3) for rate in highest_rates(HARMONIC_ENDS, 0.7)]
     [1.1, 1.6, 6.4]
