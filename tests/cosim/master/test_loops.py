@@ -257,11 +257,6 @@ carrier_mass = 0.1105 # the head's own: the belt's force would have to be 5 N mo
     assert [path.name for path in tmp_path.iterdir()] == ["unsolved.h5.partial"]
 
 
-def test_a_coupling_of_another_name_is_refused() -> None:
-    with pytest.raises(LoomfmuError, match=r"coupling = 'iterate' is unknown; did you mean 'iterated'"):
-        scenes.parse('coupling = "iterate"')
-
-
 # ---- the solver and the watch by themselves
 
 
