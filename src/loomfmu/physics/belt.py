@@ -16,24 +16,15 @@ from .numerics.brackets import at_root
 NO_LIMIT = 1e4
 
 
-def _knot(index: int) -> tuple[float, float]:
-    """Guide clearance [m] and length factor [1] of Table 3."""
-    if index == 0:
-        return 0.0, 0.70
-    if index == 1:
-        return 0.30e-3, 0.80
-    if index == 2:
-        return 0.50e-3, 0.90
-    if index == 3:
-        return 0.75e-3, 0.97
-    return 0.80e-3, 1.00
+# knots of Table 3: guide clearances [m] and length factors [1]
+CLEARANCES = (0.0, 0.30e-3, 0.50e-3, 0.75e-3, 0.80e-3)
+FACTORS = (0.70, 0.80, 0.90, 0.97, 1.00)
 
 
 def _secant(index: int) -> tuple[float, float]:
     """Width and slope of the interval that begins at a knot."""
-    left, low = _knot(index)
-    right, high = _knot(index + 1)
-    return right - left, (high - low) / (right - left)
+    width = CLEARANCES[index + 1] - CLEARANCES[index]
+    return width, (FACTORS[index + 1] - FACTORS[index]) / width
 
 
 def _end_slope(width: float, slope: float, next_width: float, next_slope: float) -> float:
@@ -78,16 +69,13 @@ def length_factor(clearance: float) -> float:
         return 1.0
     index = 0
     for knot in range(1, 4):
-        begin, _factor = _knot(knot)
-        if clearance >= begin:
+        if clearance >= CLEARANCES[knot]:
             index = knot
-    left, low = _knot(index)
-    right, high = _knot(index + 1)
-    width = right - left
-    t = (clearance - left) / width
+    width = CLEARANCES[index + 1] - CLEARANCES[index]
+    t = (clearance - CLEARANCES[index]) / width
     return (
-        low
-        + (high - low) * t * t * (3.0 - 2.0 * t)
+        FACTORS[index]
+        + (FACTORS[index + 1] - FACTORS[index]) * t * t * (3.0 - 2.0 * t)
         + width * t * (1.0 - t) * ((1.0 - t) * _knot_slope(index) - t * _knot_slope(index + 1))
     )
 

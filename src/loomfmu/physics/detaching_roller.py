@@ -65,21 +65,10 @@ def drafting_force(fibre_share: float, friction: float, nip_load: float, resista
     return 0.5 * fibre_share * (friction * nip_load - resistance)
 
 
-def _motion_knot(index: int) -> tuple[float, float, float]:
-    """Division, torque of the roller's inertia [N m] and its integral over the divisions."""
-    if index == 0:
-        return 1.5, 0.0, 0.0
-    if index == 1:
-        return 6.0, -0.28, -0.63
-    if index == 2:
-        return 11.0, -0.28, -2.03
-    if index == 3:
-        return 18.4, 1.18, 1.30
-    if index == 4:
-        return 25.0, -0.53, 3.445
-    return 38.0, 0.0, 0.0
-
-
+# knots of the assumed motion: divisions, torques of the roller's inertia [N m], their integrals
+KNOTS = (1.5, 6.0, 11.0, 18.4, 25.0, 38.0)
+TORQUES = (0.0, -0.28, -0.28, 1.18, -0.53, 0.0)
+INTEGRALS = (0.0, -0.63, -2.03, 1.30, 3.445, 0.0)
 # torque per angular acceleration by shaft angle: the roller's inertia times the square of the shaft speed
 _MOTION_UNIT = 135.64e-6 * (10.0 * 3.141592653589793) ** 2
 
@@ -104,15 +93,14 @@ def assumed_motion(division: float) -> tuple[float, float]:
         return 0.0, 0.0
     index = 0
     for inner in range(1, 5):
-        knot, _torque, _integral = _motion_knot(inner)
-        if division >= knot:
+        if division >= KNOTS[inner]:
             index = inner
-    left, low, before = _motion_knot(index)
-    right, high, _integral = _motion_knot(index + 1)
-    width = right - left
-    u = (division - left) / width
+    low = TORQUES[index]
+    high = TORQUES[index + 1]
+    width = KNOTS[index + 1] - KNOTS[index]
+    u = (division - KNOTS[index]) / width
     torque = low + (high - low) * u * u * (3.0 - 2.0 * u)
-    integral = before + width * u * (low + (high - low) * u * u * (1.0 - 0.5 * u))
+    integral = INTEGRALS[index] + width * u * (low + (high - low) * u * u * (1.0 - 0.5 * u))
     return integral * (2.0 * pi / DIVISIONS) / _MOTION_UNIT, torque / _MOTION_UNIT
 
 
