@@ -340,15 +340,6 @@ def test_a_belt_that_buckles_for_less_than_a_step_is_deflected() -> None:
         assert abs(found.worst - 3.744e-3) <= found.error + 5e-7  # digits of the value
 
 
-def test_no_blow_decides_nothing_below_the_least_speed_of_one() -> None:
-    """0 blows held, with an error of 1e-12, where finer steps count one of 1.33 mm/s."""
-    keys = 'weave = "1100/0110/0011/1001"\nwarps = true\nplay = true\n'
-    blows = claim("heald_blows", play="play_1", at_most="0.001 m/s")
-    law = {"dobby__law": "spline_cam", "dobby__slow_point": "170 deg", "shaft__speed": "407 rev/min"}
-    found = of_loom(360, keys, blows, **law)[1]
-    assert found.word == "undecided" or found.worst > 0.001
-
-
 def test_coarser_runs_are_coarser_however_many_rows_a_table_has() -> None:
     """353 rows were points of all runs, which hardly differed: errors were a third of what they should be."""
     rows = [[row / 353, f"{100 + row % 7} cN"] for row in range(354)]

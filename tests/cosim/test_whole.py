@@ -186,13 +186,6 @@ def test_a_parameter_has_the_effect_of_set(
     same(found, traced(scene, tmp_path_factory.mktemp("set")))
 
 
-@pytest.mark.slow
-def test_what_turns_unevenly_can_be_chosen_in_the_fmu(tmp_path: Path, demo: Whole) -> None:
-    scene = loaded(DEMO, shaft__ramp_duration=0.1, shaft__ripple_amplitude=0.02)
-    instance = demo.instance(shaft__ramp_duration=0.1, shaft__ripple_amplitude=0.02)
-    same(instance.along(scene.steps, scene.step_size), traced(scene, tmp_path))
-
-
 def test_a_state_is_saved_restored_and_serialized(demo: Whole) -> None:
     size = loaded(DEMO).step_size
     instance, other = demo.instance("one"), demo.instance("other")

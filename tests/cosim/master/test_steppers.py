@@ -154,17 +154,6 @@ def test_chosen_points_are_stepped_by_both_alike() -> None:
     np.testing.assert_array_equal(compiled[0], points)
 
 
-def test_equal_points_that_were_chosen_give_the_results_of_equal_steps() -> None:
-    scene = small(90)
-    even = uniform(scene)
-    points = chosen(scene, np.arange(even.steps + 1) * even.step_size)
-    for part, its in zip(
-        stepped(scene, CompiledStepper, points), stepped(scene, CompiledStepper), strict=True
-    ):
-        # the sizes of the steps differ by the rounding of a difference, 1e-16 of 0.1 s in steps of 1 ms
-        np.testing.assert_allclose(part, its, rtol=1e-9, atol=1e-9)
-
-
 def test_a_loom_without_its_constant_shaft_turns_alike_to_the_last_bit() -> None:
     scene = small(180)
     everything = [f"{name}.{variable}" for name, variable in Master(scene).slots]
