@@ -93,10 +93,8 @@ def critical_force(free_length: float, factor: float, stiffness: float) -> float
 def margin(free_length: float, axial_force: float, factor: float, stiffness: float) -> float:
     """Stability margin `1 - F / F_cr` [1], F_cr from (8): finite for every load, negative once it buckles.
 
-    It is 1 while the belt is inside its guide and above 1 under tension.
-
-    Args:
-        axial_force: compression F of the belt; negative for tension [N]
+    It is 1 while the belt is inside its guide and above 1 under tension. The force is negative for
+    tension [N].
 
     >>> margin(-0.1, 50.0, 0.8, 0.25)
     1.0
@@ -157,10 +155,7 @@ def speed_limit(
 
 
 def complete_elliptic(modulus: float) -> float:
-    """Complete elliptic integral of the first kind K(k), by the arithmetic-geometric mean.
-
-    Args:
-        modulus: k, 0 to below 1 [1]
+    """Complete elliptic integral of the first kind K(k), 0 <= k < 1, by the arithmetic-geometric mean.
 
     >>> round(complete_elliptic(0.0) * 2 / pi, 12)
     1.0
@@ -228,12 +223,9 @@ LARGEST_BEND = 0.4031401897056502
 
 
 def bent_load_ratio(bend: float) -> float:
-    """Load ratio [1] at which a pinned column first has a deflection: `elastica_deflection` inverted.
+    """Load ratio [1] at which a pinned column first has a deflection, `bend` times its length.
 
-    It is 1 without a deflection, and `inf` from 0.4031 on, which no load gives.
-
-    Args:
-        bend: deflection over the length of the column [1]
+    `elastica_deflection` inverted: 1 without a deflection, `inf` from 0.4031 on, which no load gives.
 
     >>> round(bent_load_ratio(8.4e-3 / 0.174), 4)  # (686 / 685)^2 = 1.0029
     1.0029

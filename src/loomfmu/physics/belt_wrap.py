@@ -63,12 +63,9 @@ def restraint_load(stiffness: float, diameter: float, clearance: float) -> float
 
 
 def bending_strain(thickness: float, diameter: float) -> float:
-    """Strain of the belt's outer face on its wheel [1], `e = t / (D + t)`.
+    """Strain of the outer face of a belt of `thickness` t [m] on its wheel [1], `e = t / (D + t)`.
 
     The face is t / 2 from the belt's middle, which lies on a radius of (D + t) / 2.
-
-    Args:
-        thickness: t of the belt [m]
 
     >>> round(100 * bending_strain(1.35e-3, 0.397), 3)  # per cent
     0.339

@@ -36,9 +36,7 @@ def stop_damping_ratio(restitution: float) -> float:
     A spring and dashpot that act only in compression let go when their force is zero, after the time
     `(pi - atan2(2 r s, 1 - 2 r^2)) / (s w)`, `s = sqrt(1 - r^2)`; the share of the speed left is
     `exp(-r w time)`. Solved for r by bisection. See Schwager and Poeschel, Granular Matter 9 (2007) 465.
-
-    Args:
-        restitution: speed after over speed before the contact, 0.15 to 1 [1]
+    The restitution is the speed after a contact over that before it, 0.15 to 1 [1].
 
     >>> stop_damping_ratio(1.0) < 1e-12, round(stop_damping_ratio(0.5), 4)
     (True, 0.2553)

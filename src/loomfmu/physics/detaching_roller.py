@@ -1,7 +1,7 @@
 """Detaching rollers of a cotton comber: the torques that drive them over a nip, and the drafting force.
 
-A nip is one revolution of the comb cylinder, counted in 40 divisions. Each unit has a back and a front
-roller, each with a top roller that it drives through the web.
+A nip is one revolution of the comb cylinder, counted in 40 divisions: a `division` d is 0 to 40. Each unit
+has a back and a front roller, each with a top roller that it drives through the web.
 
 Source: study of the driving torque of the detaching rollers of the comber JSFA588, Cotton Textile
 Technology (2020) no. 4, article 5, sections 2 to 4, equations (1) to (20), Tables 1 and 2.
@@ -80,9 +80,6 @@ def assumed_motion(division: float) -> tuple[float, float]:
     knots at 18.4 (1.18 N m at 300 nips/min) and 25 (-0.53 N m) and the order of the phases: back, forward,
     rest. The other knots are chosen so that the roller is at rest again at the end of the nip.
 
-    Args:
-        division: of the nip, 0 to 40 [1]
-
     Returns:
         first and second derivative of the roller's angle by the shaft angle [1]
 
@@ -110,9 +107,6 @@ def assumed_fibre_share(division: float) -> float:
     The source publishes 0 up to 18 and from 30, and the largest number at 23.8. The rise is a cubic with
     level ends. The fall is `((30 - d) / 6.2)^3`: 0.249 at 26.1, where the valleys of Table 2 at three speeds
     require 0.254.
-
-    Args:
-        division: d of the nip, 0 to 40 [1]
 
     >>> [round(assumed_fibre_share(division), 12) for division in (18.0, 20.9, 23.8, 30.0)]
     [0.0, 0.5, 1.0, 0.0]

@@ -1,6 +1,7 @@
 """Heald frame: motion from the rotor's angle, and the pattern of raised frames.
 
-Source: Korolev, thesis on rotary dobbies (Moscow), sections 2.5, 3.1 and 3.6.
+Source: Korolev, thesis on rotary dobbies (Moscow), sections 2.5, 3.1 and 3.6. S is the `angle` of
+the rotor [rad].
 """
 
 from math import cos, floor, pi, sin
@@ -11,9 +12,6 @@ def lift_fraction(angle: float, velocity: float, acceleration: float) -> tuple[f
 
     The frame's crank makes half a turn per turn of the rotor, section 3.1. Computed as `sin(S/4)^2`, so that
     nothing cancels near the rest position.
-
-    Args:
-        angle, velocity, acceleration: of the rotor [rad, rad/s, rad/s2]
 
     >>> lift_fraction(0.0, 10.0, 0.0)
     (0.0, 0.0, 12.5)
@@ -30,9 +28,6 @@ def lift_fraction(angle: float, velocity: float, acceleration: float) -> tuple[f
 
 def crank_slope(angle: float) -> float:
     """Slope of `lift_fraction` by the rotor's angle [1/rad], `sin(S/2) / 4`: turns a force into a torque.
-
-    Args:
-        angle: of the rotor S [rad]
 
     >>> crank_slope(pi), crank_slope(0.0)
     (0.25, 0.0)

@@ -3,9 +3,11 @@
 Source: Korolev, thesis on rotary dobbies (Moscow), section 3.6.1, equations (3.30) to (3.48), in the
 corrected form.
 
-Symbols: I the `inertia` of a pawl [kg m2], b and c its `length` and `width` [m], T the `span` of shaft angle
-that an engagement takes [rad], phi0 the whole `turn` of the pawl [rad]; P the `force` of its spring at the
-end of the turn, its preload [N], C the spring's `stiffness` [N/m], R its lever `arm` [m].
+Symbols: M and I are `mass` and `inertia` of a pawl [kg, kg m2], b and c its `length` and `width` [m], of
+which the `rest_share` c0 / c stays outside the slot [1]; T is the `span` of shaft angle that an engagement
+takes and x the angle since it began [rad], phi0 the whole `turn` of the pawl and phi what it has `turned`
+[rad]; P is the `force` of its spring at the end of the turn, its preload [N], C the spring's `stiffness`
+[N/m], R its lever `arm` [m].
 """
 
 from math import asin, cos, pi, sin, sqrt
@@ -19,9 +21,6 @@ def pawl_inertia(mass: float, length: float, width: float) -> float:
 
     Erratum: 375e-6 is also printed as 3750e-6.
 
-    Args:
-        mass: M [kg]
-
     >>> round(1e6 * pawl_inertia(0.170, 0.16, 0.03), 1)
     375.4
     """
@@ -30,9 +29,6 @@ def pawl_inertia(mass: float, length: float, width: float) -> float:
 
 def pawl_turn(length: float, width: float, rest_share: float) -> float:
     """Turn of a pawl from one disc to the other [rad], `phi0 = (c + c0) / b`, equation (3.30).
-
-    Args:
-        rest_share: c0 / c, share of its width that stays outside the slot [1]
 
     >>> round(pawl_turn(0.16, 0.03, 0.15), 3)
     0.216
@@ -45,9 +41,6 @@ def engagement(x: float, span: float, turn: float) -> tuple[float, float, float]
 
     The pawl is at rest before and after; velocity and acceleration are continuous. Erratum: (3.33) prints 1/T
     before the sine.
-
-    Args:
-        x: shaft angle since the engagement began [rad]
 
     >>> engagement(0.0, 1.3, 0.2), engagement(1.3, 1.3, 0.2)[0]
     ((0.0, 0.0, 0.0), 0.2)
@@ -81,9 +74,6 @@ def spring_torque(turned: float, turn: float, force: float, stiffness: float, ar
     """Torque of the spring on the pawl [N m], `M = R [P + C R (phi0 - phi)]`: (3.32) and (3.37) as one.
 
     The source takes it as constant for the torque, `P R`, and without preload for the time, `C R^2 phi`.
-
-    Args:
-        turned: angle phi that the pawl has turned [rad]
 
     >>> spring_torque(0.25, 0.25, 20.0, 2500.0, 0.05), spring_torque(0.0, 0.25, 20.0, 2500.0, 0.05)
     (1.0, 2.5625)

@@ -35,10 +35,7 @@ def sense_of(velocity: float, free: float, friction: float) -> float:
 def stopping_share(
     velocity: float, net: float, rise: float, duration: float, inertia: float, slope: float, sense: float
 ) -> float:
-    """Share of a part of the step at which a turning shaft stops, 1 if it does not.
-
-    Args:
-        sense: in which it turns, 1 or -1
+    """Share of a part of the step at which a shaft that turns in a sense, 1 or -1, stops; 1 if it does not.
 
     >>> stopping_share(3.0, -4.0, 0.0, 3.0, 2.0, 0.0, 1.0)  # after 1.5 s
     0.5

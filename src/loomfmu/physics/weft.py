@@ -148,10 +148,7 @@ def snatch_tension(stiffness: float, density: float, speed: float) -> float:
 
 
 def moving_load(length: float, speed: float, acceleration: float, density: float, drag: float) -> float:
-    """Return the tension that inertia and drag of the moving yarn add [N], `q L a + k L v^2`.
-
-    Args:
-        drag: k, from `drag_per_length` [kg/m2]
+    """Return the tension that inertia and drag k [kg/m2] of the moving yarn add [N], `q L a + k L v^2`.
 
     >>> moving_load(2.0, 3.0, 10.0, 0.5, 1.0)
     28.0

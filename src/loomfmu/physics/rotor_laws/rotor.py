@@ -136,10 +136,7 @@ def dwell_angle(law: int, reduction: float, tolerance: float) -> float:
 
     The frame is `(1 - cos(S/2)) / 2` of its stroke away from its end; the dwell is symmetric about the slow
     point, so it is twice the x at which `S = 4 asin(sqrt(tolerance))`, found to rounding by Newton steps
-    kept inside a bracket.
-
-    Args:
-        tolerance: share of the stroke, 0 to 1/2 [1]
+    kept inside a bracket. The tolerance is at most 1/2.
 
     >>> from math import degrees
     >>> round(degrees(dwell_angle(HARMONIC_ENDS, 0.7, 0.015)), 1)
