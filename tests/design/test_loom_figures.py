@@ -52,6 +52,10 @@ def test_inverse_problems_return_what_gives_the_speed():
             "mass cannot be set: the function solves for the mass",
         ),
         (lambda: loom.mass_for("-650 rpm", "WL680-3600"), "speed = -650 rev/min is outside"),
+        (
+            lambda: loom.mass_for("9000 rpm", "WL680-3600"),
+            "no head mass gives 9000 rev/min: between 1 g and 10000",
+        ),
         (lambda: loom.mass_for("600 rpm", "WL680-3600", mas=0.1), "mas is unknown; did you mean 'mass'?"),
         (
             lambda: loom.safe_speed("WL680-3600", clearance="0.5 mm", length_factor=0.8),
