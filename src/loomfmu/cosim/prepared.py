@@ -189,11 +189,10 @@ class Pattern:
             writer = writer_of(plan, stepping.channels, path, target, about)
             with kept_readable(writer, path):
                 seconds = _recorded(master, writer, plan, progress)
-            steps, early = master.steps, early_end(plan, master.ended)
-            warnings = (*scene.notes, *master.warnings())
-            if coarser is None:
-                instances.close()  # coarser runs may be stepped by the same master
-                with kept_readable(writer, path):
+                steps, early = master.steps, early_end(plan, master.ended)
+                warnings = (*scene.notes, *master.warnings())
+                if coarser is None:
+                    instances.close()  # coarser runs may be stepped by the same master
                     try:
                         coarser = self._coarser(scene, plan.grid)
                     except KeyboardInterrupt:

@@ -11,7 +11,7 @@ import pytest
 from direct_loom import small
 from foreign_motors import WHOLE, motor3
 from odd_components import odd
-from stepped import same_bits, stepped
+from stepped import same_bits, sampled, stepped
 
 from loomfmu import LoomfmuError
 from loomfmu.components import COMPONENTS
@@ -164,11 +164,7 @@ def test_a_loom_without_its_constant_shaft_turns_alike_to_the_last_bit() -> None
     for master in (whole, without):
         with master:
             master.initialize()
-            samples = []
-            master.run(
-                5000, lambda *parts, to=samples: to.extend(part.copy() for part in parts), lambda _: None
-            )
-            _times, *found[master] = samples
+            _times, *found[master] = sampled(master)
     for key, (kind, slot) in whole.slots.items():
         other_kind, other_slot = without.slots[key]
         place = 0 if kind == "Real" else 1
