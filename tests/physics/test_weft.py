@@ -75,9 +75,10 @@ def test_running_yarn_over_eyes_by_its_momentum(before, density, speed, unwindin
         capstan_gain(friction, sum(angles)), before, unwinding * density, density, 0.0, 0.0, speed, 0.0
     )
     start = before + unwinding * density * speed**2
-    # (1 + f) / (1 - f) with f = mu tan(turn / 2) at each corner: third order in turns of at most 0.02
+    # (1 + f) / (1 - f) with f = mu tan(turn / 2) at each corner: its logarithm is off by
+    # mu (1 + mu^2) turn^3 / 12, in 400 turns of 0.02 by at most 1.7e-4
     assert limit == pytest.approx(
-        over_eyes(start, density, speed, friction, angles, 100), rel=1e-4, abs=1e-4 * density * speed**2
+        over_eyes(start, density, speed, friction, angles, 100), rel=2e-4, abs=1e-4 * density * speed**2
     )
 
 
