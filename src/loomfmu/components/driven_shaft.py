@@ -9,6 +9,7 @@ from ..declaring.declarations import at_step_end, input_, output, parameter, sta
 from ..declaring.variables import Component, Terminal
 from ..physics.driven_shaft import bulge_for, driven_motion, summed, work_of
 from ..physics.shaft_friction import opposed_motion, sense_of, stopping_share
+from .quantities import ANGLE, INERTIA, TORQUE, TURNING, WORK
 from .shared_declarations import shaft_speed, shaft_start
 from .terminals import SHAFT
 
@@ -38,11 +39,9 @@ class DrivenShaft(Component):
         nominal=10.0,
     )
     inertia: float = parameter(
-        "kg.m2",
+        INERTIA.within(1e-6, 1e6),
         2.0,
         "Inertia of shaft, motor and flywheel, referred to the shaft (assumed)",
-        minimum=1e-6,
-        maximum=1e6,
     )
     dry_friction: float = parameter(
         "N.m",
@@ -69,24 +68,18 @@ class DrivenShaft(Component):
     )
     torque: tuple[float, ...] = array(
         input_(
-            "N.m",
+            TORQUE,
             0.0,
             f"Load torque of mechanism {number}; positive acts backwards",
-            nominal=10.0,
-            minimum=-1e12,
-            maximum=1e12,
             source="*.shaft_torque",
         )
         for number in range(1, LOADS + 1)
     )
     work: tuple[float, ...] = array(
         input_(
-            "J",
+            WORK,
             0.0,
             f"Work that mechanism {number} has taken from the shaft, at the end of the step",
-            nominal=10.0,
-            minimum=-1e15,
-            maximum=1e15,
             source="*.shaft_work",
             when=f"use_work_{number}",
         )
@@ -94,20 +87,15 @@ class DrivenShaft(Component):
     )
     passed_torque: tuple[float, ...] = array(
         input_(
-            "N.m",
+            TORQUE,
             0.0,
             f"Part of torque_{number} whose work is not in work_{number}",
-            nominal=10.0,
-            minimum=-1e12,
-            maximum=1e12,
             source="*.passed_torque",
         )
         for number in range(1, LOADS + 1)
     )
-    angle: float = output(
-        "rad", "Shaft angle, not wrapped", display="deg", unbounded=True, nominal=6.0, rate="velocity"
-    )
-    velocity: float = output("rad/s", "Shaft velocity", display="rev/min", nominal=50.0, rate="acceleration")
+    angle: float = output(ANGLE, "Shaft angle, not wrapped", unbounded=True, nominal=6.0, rate="velocity")
+    velocity: float = output(TURNING, "Shaft velocity", rate="acceleration")
     acceleration: float = output("rad/s2", "Shaft acceleration", nominal=100.0)
     motor_torque: float = output("N.m", "Motor torque on the shaft", nominal=10.0)
     load_torque: float = output("N.m", "Load torque of all mechanisms, braking", nominal=10.0)

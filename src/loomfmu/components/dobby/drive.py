@@ -20,6 +20,7 @@ from ...physics.rotor_laws.rotor import highest_rates
 from ...physics.rotor_laws.shed_cam import SPLINE_CAM, cam_phase
 from ...physics.rotor_laws.table import TABLE
 from ...physics.shaft import too_far
+from ..quantities import ANGLE, INERTIA, TURNING
 from ..shared_declarations import found_once
 from ..terminals import OF_ROTOR, ROTOR
 from .laws import RotorLaws
@@ -39,23 +40,18 @@ class DobbyDrive(RotorLaws):
     terminals: ClassVar[tuple[Terminal, ...]] = (*RotorLaws.terminals, ROTOR.of(*OF_ROTOR))
 
     rotor_inertia: float = parameter(
-        "kg.m2",
+        INERTIA.within(0.0, 1e3),
         0.05,
         "Inertia of the rotor (assumed: none published); for spline_cam, of the cam shaft",
-        minimum=0.0,
-        maximum=1e3,
     )
     rotor_angle: float = output(
-        "rad",
+        ANGLE,
         "Rotor angle from the slow point of pick 0, not wrapped",
-        display="deg",
         unbounded=True,
         nominal=6.0,
         rate="rotor_velocity",
     )
-    rotor_velocity: float = output(
-        "rad/s", "Rotor velocity", display="rev/min", nominal=50.0, rate="rotor_acceleration"
-    )
+    rotor_velocity: float = output(TURNING, "Rotor velocity", rate="rotor_acceleration")
     rotor_acceleration: float = output("rad/s2", "Rotor acceleration", nominal=1000.0)
     lift_fraction: float = output(
         "1", "Lift of a frame that changes at every pick, as a share of its stroke", rate="lift_rate"
@@ -73,15 +69,13 @@ class DobbyDrive(RotorLaws):
     kinetic_energy: float = output("J", "Kinetic energy of the rotor", nominal=10.0)
     shaft_work: float = output("J", "Work taken from the shaft, now kinetic_energy", nominal=10.0)
     dwell_angle: float = found_once(
-        "rad",
+        ANGLE,
         "Shaft angle for which a changing frame stays within dwell_tolerance of its end",
-        display="deg",
         nominal=1.5,
     )
     clear_shed_angle: float = found_once(
-        "rad",
+        ANGLE,
         "Shaft angle for which a changing frame stays within clear_fraction of its end",
-        display="deg",
         nominal=1.5,
     )
     highest_speed: float = found_once(

@@ -1,11 +1,13 @@
 """The rotor laws of a dobby drive: their course, their peaks and their dwells."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import asin, fabs, floor, inf, pi, sqrt
 from typing import Any, ClassVar
 
+from ...declaring.arrays import array
+from ...declaring.declarations import auxiliary, parameter
 from ...declaring.variables import Problem
 from ...physics.numerics.brackets import at_root, nearer_root
 from ...physics.numerics.spline import Cubic, cubic_piece, slope_extremes, stretch_above, turning_points
@@ -20,13 +22,126 @@ from ...physics.rotor_laws.plateau import PLATEAU, plateau_law
 from ...physics.rotor_laws.rotor import dwell_angle, rotor_law
 from ...physics.rotor_laws.shed_cam import SPLINE_CAM, not_a_knot
 from ...physics.rotor_laws.table import TABLE, bend_weight
-from ..shaft_driven import TOO_FAR
-from .parameters import LawParameters
+from ..quantities import ANGLE, DISTANCE, EITHER_WAY, LENGTH, LEVER, RATIO, SHARE, TURN
+from ..shaft_driven import TOO_FAR, ShaftDriven
 
 
 @dataclass(slots=True)
-class RotorLaws(LawParameters):
+class RotorLaws(ShaftDriven):
     """A rotor that turns by one of several laws."""
+
+    law: int = parameter(
+        "1",
+        4,
+        "Rotor law",
+        choices=(
+            "uniform",
+            "harmonic_ends",
+            "sloped_line",
+            "sloped_sine",
+            "slotted_levers",
+            "noncircular_gears",
+            "spline_cam",
+            "table",
+            "plateau",
+        ),
+    )
+    speed_reduction: float = parameter(
+        SHARE,
+        0.5,
+        "Share by which the rotor slows down at the slow point, zeta (harmonic_ends, sloped_..., plateau)",
+    )
+    slow_point: float = parameter(
+        EITHER_WAY,
+        pi,
+        "Shaft angle of the slow point, the middle of the open-shed dwell; start of the rise for spline_cam",
+    )
+    dwell_tolerance: float = parameter(
+        RATIO.within(1e-9, 0.5), 0.015, "Share of the stroke within which a frame counts as dwelling"
+    )
+    clear_fraction: float = parameter(
+        RATIO.within(1e-9, 0.5),
+        0.08325,
+        "Share of the stroke within which the warp counts as clear of the weft",
+    )
+    lever_radius: float = parameter(
+        LEVER,
+        0.1,
+        "Radius of the pin on the driving pulley (slotted_levers; assumed)",
+    )
+    driven_radius: float = parameter(
+        LEVER,
+        0.1,
+        "Radius of the pin on the lever about the eccentric (slotted_levers; assumed)",
+    )
+    eccentricity: float = parameter(
+        DISTANCE,
+        0.04,
+        "Distance of the eccentric from the shaft (slotted_levers; assumed)",
+    )
+    gear_harmonic: tuple[float, ...] = array(
+        parameter(
+            RATIO.within(-10.0, 10.0),
+            share,
+            f"Amplitude of the {which} harmonic of the rotor speed (noncircular_gears; assumed)",
+        )
+        for share, which in ((-0.27, "1st"), (-0.13, "2nd"), (-0.05, "3rd"), (-0.025, "4th"))
+    )
+    cam_angle: tuple[float, ...] = array(
+        parameter(
+            ANGLE.within(0.0, 4.0 * pi),
+            degrees * pi / 180.0,
+            f"Shaft angle of control point {number}, from the start of the rise",
+        )
+        for number, degrees in enumerate((0.0, 80.0, 295.0, 450.0, 657.0, 720.0), start=1)
+    )
+    cam_height: tuple[float, ...] = array(
+        parameter(
+            LENGTH.within(-1.0, 1.0, nominal=0.01),
+            height,
+            f"Height at control point {number}, of the warp in the air stream (Table 4.2)",
+        )
+        for number, height in enumerate((0.0, 0.002, 0.015, 0.0145, 0.0015, 0.0), start=1)
+    )
+    table_points: int = parameter(
+        "1", 36, "Number of points, evenly spaced over a turn from the slow point", minimum=4, maximum=36
+    )
+    table: tuple[float, ...] = array(  # by default that of an even turn
+        parameter(
+            ANGLE.within(-2.0 * pi, 4.0 * pi),
+            2.0 * pi * point / 36,
+            f"Rotor angle at point {point + 1} of the table",
+        )
+        for point in range(36)
+    )
+    plateau_angle: float = parameter(
+        TURN,
+        0.5 * pi,
+        "Shaft angle of lowest speed, half to either side of the slow point (plateau; inferred)",
+    )
+    ramp_angle: float = parameter(
+        ANGLE.within(pi / 180.0, pi),
+        40.9 * pi / 180.0,
+        "Shaft angle from lowest to highest speed (plateau; inferred)",
+    )
+    cam_bend: Sequence[float] = array(
+        auxiliary("m", f"Second derivative of the cam's spline at control point {number}")
+        for number in range(1, 7)
+    )
+    cam_top: float = auxiliary(
+        "rad", "Shaft angle from the start of the rise to the highest point of the cam"
+    )
+    cam_span: float = auxiliary("m", "Largest height of the cam's spline above its start")
+    lowest_speed: float = auxiliary("1", "Lowest rotor speed over the shaft's, for laws that could reverse")
+    segment: int = auxiliary(
+        "1", "Current segment of the spline, counted from 0; -1 for none", start=-1, minimum=-1, maximum=36
+    )
+    segment_start: float = auxiliary("rad", "Start of the current segment")
+    segment_length: float = auxiliary("rad", "Length of the current segment", minimum=0.0)
+    segment_left: float = auxiliary("1", "Value at the start of the current segment")
+    segment_right: float = auxiliary("1", "Value at the end of the current segment")
+    segment_left_bend: float = auxiliary("1", "Second derivative at the start of the current segment")
+    segment_right_bend: float = auxiliary("1", "Second derivative at the end of the current segment")
 
     problems: ClassVar[tuple[Problem, ...]] = (
         Problem(
