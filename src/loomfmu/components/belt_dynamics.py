@@ -106,10 +106,7 @@ class BeltDynamics(Component):
         HEAD_LENGTH, 0.550, "Length of head and rigid section", source="belt_#.head_length"
     )
     idle_travel: float = parameter(
-        HEAD_LENGTH,
-        0.243,
-        "Travel of the head before it leaves the guide",
-        source="belt_#.idle_travel",
+        HEAD_LENGTH, 0.243, "Travel of the head before it leaves the guide", source="belt_#.idle_travel"
     )
     guide_end: int = parameter(
         "1",
@@ -183,9 +180,7 @@ class BeltDynamics(Component):
         LENGTH.within(1e-6, 1.0, nominal=1e-3), 2e-3, "Deflection that the shed leaves room for"
     )
     shortest_length: float = parameter(
-        RADIUS,
-        0.02,
-        "Free length below which the belt is taken as straight (assumed)",
+        RADIUS, 0.02, "Free length below which the belt is taken as straight (assumed)"
     )
     modes: int = parameter(
         "1",

@@ -24,11 +24,7 @@ class BeltWrap(Component):
     thickness: float = parameter(
         THICKNESS, 1.35e-3, "Thickness of the belt, for its strain (published: 30 mm x 1.35 mm)"
     )
-    wrap_angle: float = parameter(
-        TURN,
-        pi,
-        "Angle of the belt on the wheel, for information only: no effect",
-    )
+    wrap_angle: float = parameter(TURN, pi, "Angle of the belt on the wheel, for information only: no effect")
     block_clearance: float = input_(
         LENGTH.within(1e-6, 0.01, nominal=1e-3), 0.3e-3, "Clearance between block and belt; grows with wear"
     )

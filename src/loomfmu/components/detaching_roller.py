@@ -88,12 +88,7 @@ class DetachingRoller(ShaftDriven):
         maximum=1e5,
         nominal=10.0,
     )
-    division: float = output(
-        "1",
-        "Division of the nip, 0 to 40",
-        nominal=10.0,
-        depends=OF_SHAFT,
-    )
+    division: float = output("1", "Division of the nip, 0 to 40", nominal=10.0, depends=OF_SHAFT)
     roller_acceleration: float = output(
         "rad/s2", "Acceleration of the rollers in use", nominal=10000.0, depends=_OF_MOTION
     )

@@ -55,9 +55,7 @@ class PatternLock(ShaftDriven):
     pawl_width: float = parameter(LENGTH.within(1e-4, 10.0, nominal=0.01), 0.030, "Width of the pawl")
     rest_share: float = parameter(SHARE, 0.15, "Share of the pawl's width that stays outside the slot")
     engagement_start: float = parameter(
-        EITHER_WAY,
-        2.4870941840919194,
-        "Shaft angle at which the engagement begins (assumed)",
+        EITHER_WAY, 2.4870941840919194, "Shaft angle at which the engagement begins (assumed)"
     )
     engagement_angle: float = parameter(
         ANGLE.within(1e-3, 2.0 * pi), 1.3089969389957472, "Shaft angle that the engagement takes"
@@ -75,9 +73,7 @@ class PatternLock(ShaftDriven):
     )
     lever_arm: float = parameter(LINK_LENGTH, 0.050, "Lever arm of the spring")
     available_angle: float = parameter(
-        TURN,
-        0.5 * pi,
-        "Shaft angle of the rotor's dwell, in which the pawl must change over",
+        TURN, 0.5 * pi, "Shaft angle of the rotor's dwell, in which the pawl must change over"
     )
     frame_count: int = parameter("1", 20, "Frames of the dobby, one pawl each", minimum=0, maximum=1000)
     friction_coefficient: float = parameter(RATIO.within(0.0, 10.0), 0.1, "Friction of a pawl on its disc")

@@ -98,10 +98,7 @@ class WeftInsertion(ShaftDriven):
         maximum=20.0,
     )
     travel: float = output(
-        "m",
-        "Travel of the rapier head from its outer dead centre",
-        rate="velocity",
-        depends=OF_SHAFT,
+        "m", "Travel of the rapier head from its outer dead centre", rate="velocity", depends=OF_SHAFT
     )
     velocity: float = output("m/s", "Velocity of the rapier head", nominal=10.0, rate="acceleration")
     acceleration: float = output("m/s2", "Acceleration of the rapier head", nominal=1000.0)

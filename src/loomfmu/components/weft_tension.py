@@ -119,9 +119,7 @@ class WeftTension(ShaftDriven):
         "Unwinding tension over that of the yarn's momentum; above 1 with a balloon (assumed)",
     )
     brake_force: float = parameter(
-        YARN_FORCE,
-        0.2,
-        "Force of the yarn brake, where brake_program is 1 (assumed)",
+        YARN_FORCE, 0.2, "Force of the yarn brake, where brake_program is 1 (assumed)"
     )
     brake_program: tuple[float, ...] = array(
         parameter(
@@ -141,9 +139,7 @@ class WeftTension(ShaftDriven):
         LENGTH.within(1e-2, 100.0), 0.6, "Length of yarn from the brake to where the head takes it (assumed)"
     )
     pick_up_travel: float = parameter(
-        DISTANCE,
-        0.1,
-        "Travel at which the giver takes the weft, and the taker releases it (assumed)",
+        DISTANCE, 0.1, "Travel at which the giver takes the weft, and the taker releases it (assumed)"
     )
     travel: float = head_travel()
     velocity: float = head_velocity()

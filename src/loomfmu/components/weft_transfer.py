@@ -33,9 +33,7 @@ class WeftTransfer(Component):
         maximum=100.0,
     )
     needed_overlap: float = parameter(
-        DISTANCE,
-        0.04,
-        "Overlap that the hooks need to hand the weft over (assumed: none is published)",
+        DISTANCE, 0.04, "Overlap that the hooks need to hand the weft over (assumed: none is published)"
     )
     inputs_at_step_end: bool = at_step_end()
     giver_travel: float = head_travel(2.0953, BRINGS, "giver_", "weft")
