@@ -138,18 +138,6 @@ def test_descriptions(component):
 
 
 @every_component
-def test_variables_refer_to_variables(component):
-    known = {variable.name: variable for variable in declared(component)}
-    for variable in known.values():
-        if variable.rate is not None:
-            rate = known[variable.rate]
-            assert rate.causality == variable.causality
-            assert units.unit(rate.unit).dimension == units.unit(variable.unit).rate
-        for name in variable.depends or ():
-            assert known[name].causality == "input"
-
-
-@every_component
 def test_terminals_join_variables_that_fit(component):
     # the same kind at both ends: members and units alike, outputs at one end, inputs at the other
     for terminal in component.terminals:

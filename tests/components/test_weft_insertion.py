@@ -132,12 +132,6 @@ def test_linkages_that_do_not_close_are_refused(given, problem):
     assert not WeftInsertion.problems[problem - 1].warning
 
 
-def test_problem_of_closure_names_both_angles():
-    text = WeftInsertion.problems[0].text
-    assert "rocker_angle" in text
-    assert "crank_cone" in text
-
-
 def test_without_a_four_bar_its_lengths_do_not_matter():
     assert WeftInsertion(planar_linkage=False, pivot_x=5.0).initialize(0.0) == 0
 
