@@ -208,26 +208,6 @@ def test_a_jump_of_the_load_turns_up_in_the_acceleration_alone():
     )
 
 
-def test_starting_amid_a_load():
-    shaft = started(40.0, start_angle=2.0)
-    assert values(shaft, "output") == {
-        "angle": 2.0,
-        "velocity": FULL,
-        "acceleration": -20.0,
-        "motor_torque": 0.0,
-        "load_torque": 40.0,
-        "friction_torque": 0.0,
-        "motor_power": 0.0,
-        "motor_power_rate": 800.0 * FULL,
-        "motor_work": 0.0,
-        "load_work": 0.0,
-        "other_work": 0.0,
-        "kinetic_energy": FULL**2,
-    }
-    assert shaft.initialize(5.0) == 0  # the start is where the run starts, whatever its time
-    assert shaft.angle == 2.0
-
-
 # In a scene
 
 

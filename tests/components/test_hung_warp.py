@@ -34,15 +34,6 @@ def test_carrier_and_threads_against_a_monolithic_integration(rpm, turns, contac
     assert errors[720] < 1e-8
 
 
-def test_a_damper_without_threads_is_as_before():
-    with_none, warped = HealdDamper(), HealdDamper(thread_count=1)
-    for damper in (with_none, warped):
-        damper.initialize(0.0)
-        damper.step(0.0, 0.01)
-    assert with_none.warp_load == 0.0
-    assert warped.warp_load != 0.0
-
-
 def test_the_load_is_that_of_the_threads_at_the_carrier():
     # held still, the threads relax as WarpTension has them: the same law, solved in another component
     held = {"lift": 0.098, "velocity": 0.0, "acceleration": 0.0}

@@ -316,10 +316,7 @@ def test_a_value_out_of_its_limits_is_told_and_ends_the_run_but_not_the_process(
                 instance.start()
                 instance.set(**{variable.name: given})
             else:
-                assert instance.call("setupExperiment", None, 0.0, None) == OK
-                instance.set(**{variable.name: given})
-                instance.call("enterInitializationMode")
-                instance.call("exitInitializationMode")
+                instance.begin(**{variable.name: given})
             refused(instance, said_of(variable, given))
             instance.log.clear()
             assert instance.call("reset") == OK
@@ -364,17 +361,17 @@ def test_outputs_states_and_fixed_parameters_cannot_be_set_while_stepping(live: 
 
 def test_an_output_cannot_be_set_before_the_start_either(live: Open) -> None:
     instance = live("MainShaft")
-    instance.call("setupExperiment", None, 0.0, None)
-    instance.set(angle=1.0)
-    instance.call("enterInitializationMode")
-    instance.call("exitInitializationMode")
+    instance.begin(angle=1.0)
     refused(instance, "angle is an output and cannot be set")
 
 
 @every_fmu
 @pytest.mark.parametrize(
     ("time", "step_size"),
-    [(0.0, -1e-3), (0.0, math.nan), (0.0, math.inf), (math.nan, 1e-3), (math.inf, 1e-3), (0.0, -math.inf)],
+    [
+        *((0.0, size) for size in (-1e-3, math.nan, math.inf, -math.inf)),
+        *((time, 1e-3) for time in (math.nan, math.inf, 1e16, -1e300)),  # at which angles would overflow
+    ],
 )
 def test_a_step_that_is_not_finite_and_forward_is_refused(
     live: Open, name: str, time: float, step_size: float
@@ -383,6 +380,7 @@ def test_a_step_that_is_not_finite_and_forward_is_refused(
     assert instance.step(time, step_size) == FATAL
     said = f"step from {time!r} s by {step_size!r} s: time must be finite and the step not negative"
     assert set(instance.texts) == {said}
+    assert all(math.isfinite(value) for value in instance.outputs())
 
 
 @every_fmu
@@ -404,10 +402,7 @@ def test_a_step_before_the_initialization_is_refused(live: Open, name: str) -> N
 
 def test_a_linkage_that_does_not_close_is_told_with_its_values(live: Open) -> None:
     instance = live("WeftInsertion")
-    instance.call("setupExperiment", None, 0.0, None)
-    instance.set(crank_cone=math.radians(80.0))
-    instance.call("enterInitializationMode")
-    instance.call("exitInitializationMode")
+    instance.begin(crank_cone=math.radians(80.0))
     assert instance.texts[0].startswith(
         "the spherical linkage does not close over a whole turn: |cos(rocker_angle = 60 deg)| reaches or"
         " exceeds |cos(crank_cone = 80 deg)|"
@@ -661,14 +656,3 @@ def test_a_start_that_cannot_be_is_refused(live: Open, times: tuple[float, float
     assert instance.call("enterInitializationMode") == OK
     assert instance.call("exitInitializationMode") == FATAL
     assert set(instance.texts) == {"the start time must be finite and not after the stop time"}
-
-
-@pytest.mark.parametrize("time", [1e16, -1e300, math.inf, math.nan])
-def test_a_time_at_which_angles_would_overflow_is_refused(live: Open, time: float) -> None:
-    instance = live("MainShaft").start()
-    assert instance.step(time, 1e-3) == FATAL
-    assert (
-        instance.texts[-1]
-        == f"step from {time!r} s by 0.001 s: time must be finite and the step not negative"
-    )
-    assert all(math.isfinite(value) for value in instance.outputs())
