@@ -14,7 +14,7 @@ MAKERS = "parameter, input_, output, state, auxiliary or indicator"
 
 @dataclass(frozen=True)
 class Quantity:
-    """What variables of a kind have in common; a declaration takes it in the place of its unit.
+    """The facts that variables of a kind share; a declaration takes it in the place of its unit.
 
     Limits count for what is set, not for outputs. What a declaration states itself goes before.
     """
