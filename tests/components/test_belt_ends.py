@@ -298,6 +298,12 @@ def test_little_clearance_is_close_to_none(belt_in_c):
 @pytest.mark.parametrize("given", [{}, {"damping": 20.0}, *EVERY_END])
 def test_the_energy_is_balanced_over_both_strokes_with_each_end(belt_in_c, given, bow_of):
     loom = Loom(belt_in_c, 600.0, steps=720, bow_of=bow_of, **given)
+    books = []
+    for degrees in (105.0, 115.0):
+        loom.turn_to(degrees)
+        works = loom.belt.push_work + loom.belt.guide_work - loom.belt.lost_work
+        books.append(loom.belt.energy - works)
+    assert books[1] == pytest.approx(books[0], abs=1e-8 * loom.belt.energy_through)
     assert loom.turn_to(290.0) <= {0, 1, 3}  # a bow of the span folds on its way into a calibrated guide
     belt = loom.belt
     assert belt.energy_through > 1e-2

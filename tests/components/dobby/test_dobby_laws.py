@@ -277,11 +277,13 @@ def test_phase_of_the_spline_cam():
             assert drive.rotor_velocity == pytest.approx(2.0 * rate, rel=1e-12)  # that of the top
 
 
-def test_dwell_of_the_spline_cam_is_that_of_its_top():
-    drive, exact, (_place, height) = dobby("spline_cam"), cam_spline(), cam_top()
-    dwell = np.ptp(exact.solve(0.985 * height, extrapolate=False))
-    assert drive.dwell_angle == pytest.approx(dwell, abs=1e-12)  # rounding over a slope of 0.005
-    assert degrees(dwell) == pytest.approx(60.66, abs=5e-3)
+def test_dwells_of_the_spline_cam_are_the_crossings_of_its_spline():
+    exact, (_place, height) = cam_spline(), cam_top()
+    drive = dobby("spline_cam", clear_fraction=1.0 - 0.015 / height)  # the published 15 mm
+    for level, found in ((0.985 * height, drive.dwell_angle), (0.015, drive.clear_shed_angle)):
+        crossings = exact.solve(level, extrapolate=False)
+        assert found == pytest.approx(np.ptp(crossings), abs=1e-12)  # rounding over a slope of 0.005
+    assert degrees(drive.dwell_angle) == pytest.approx(60.66, abs=5e-3)
 
 
 # The frame
