@@ -34,8 +34,10 @@ from ..physics.numerics.extremes import highest_so_far
 from ..physics.numerics.gauss import at_stage
 from ..physics.numerics.motion import joined, joined_value, met
 from .quantities import (
+    BELT_MASS,
     BENDING_STIFFNESS,
     CLEARANCE,
+    FREQUENCY,
     HEAD_LENGTH,
     HEAD_MASS,
     LENGTH,
@@ -143,21 +145,15 @@ class BeltDynamics(Component):
         source="belt_#.taker",
     )
     belt_mass: float = parameter(
-        "kg/m",
+        BELT_MASS.within(1e-5, 10.0),
         0.05,
         "Mass of the belt per length (assumed: the published section is 0.061 to 0.065 if"
         " solid, less a fifth for its holes; 0.04 to 0.065)",
-        minimum=1e-5,
-        maximum=10.0,
-        nominal=0.1,
     )
     damping: float = parameter(
-        "1/s",
+        FREQUENCY.within(0.0, 1e4, nominal=10.0),
         0.0,
         "Rate at which a free vibration of the belt decays (assumed: none published)",
-        minimum=0.0,
-        maximum=1e4,
-        nominal=10.0,
     )
     bow: float = parameter(
         LENGTH.within(0.0, 0.1, nominal=1e-3),

@@ -16,7 +16,7 @@ from ..physics.detaching_roller import (
     top_roller_torque,
 )
 from ..physics.shaft import too_far
-from .quantities import INERTIA, RADIUS, RATIO, SHARE, TURNING
+from .quantities import FORCE, INERTIA, RADIUS, RATIO, SHARE, TURNING
 from .shaft_driven import TOO_FAR, ShaftDriven
 from .shared_declarations import OF_SHAFT
 
@@ -57,7 +57,7 @@ class DetachingRoller(ShaftDriven):
         INERTIA.within(0.0, 1.0, nominal=1e-5), 33.98e-6, "Inertia of a top roller"
     )
     nip_load: float = parameter(
-        "N", 300.0, "Load of a top roller on its detaching roller", minimum=0.0, maximum=1e5, nominal=100.0
+        FORCE.within(0.0, 1e5, nominal=100.0), 300.0, "Load of a top roller on its detaching roller"
     )
     friction: float = parameter(RATIO.within(0.0, 2.0), 0.33, "Static friction between fibres and roller")
     units: int = parameter("1", 8, "Number of units side by side in the machine", minimum=1, maximum=1000)
@@ -81,12 +81,9 @@ class DetachingRoller(ShaftDriven):
         "1", False, "Use largest_drafting_force; otherwise half of what the nip holds, by (16)"
     )
     largest_drafting_force: float = parameter(
-        "N",
+        FORCE.within(0.0, 1e5, nominal=10.0),
         45.0,
         "Drafting force with the most fibres, used if prescribe_drafting_force is true (assumed)",
-        minimum=0.0,
-        maximum=1e5,
-        nominal=10.0,
     )
     division: float = output("1", "Division of the nip, 0 to 40", nominal=10.0, depends=OF_SHAFT)
     roller_acceleration: float = output(

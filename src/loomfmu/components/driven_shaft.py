@@ -9,7 +9,7 @@ from ..declaring.declarations import at_step_end, input_, output, parameter, sta
 from ..declaring.variables import Component, Terminal
 from ..physics.driven_shaft import bulge_for, driven_motion, summed, work_of
 from ..physics.shaft_friction import opposed_motion, sense_of, stopping_share
-from .quantities import ANGLE, INERTIA, TORQUE, TURNING, WORK
+from .quantities import ANGLE, FRICTION, INERTIA, LOAD_TORQUE, LOAD_WORK, TORQUE, TURNING
 from .shared_declarations import shaft_speed, shaft_start
 from .terminals import SHAFT
 
@@ -31,12 +31,9 @@ class DrivenShaft(Component):
 
     speed: float = shaft_speed("No-load speed of the motor, referred to the shaft")
     torque_slope: float = parameter(
-        "N.m.s/rad",
+        FRICTION.within(0.0, 1e9, nominal=10.0),
         40.0,
         "Slope of the motor's torque line: torque per rad/s below speed (assumed)",
-        minimum=0.0,
-        maximum=1e9,
-        nominal=10.0,
     )
     inertia: float = parameter(
         INERTIA.within(1e-6, 1e6),
@@ -44,20 +41,14 @@ class DrivenShaft(Component):
         "Inertia of shaft, motor and flywheel, referred to the shaft (assumed)",
     )
     dry_friction: float = parameter(
-        "N.m",
+        TORQUE.within(0.0, 1e9, nominal=10.0),
         0.0,
         "Dry friction of the shaft: opposes its motion, and holds it at rest against torques up to this",
-        minimum=0.0,
-        maximum=1e9,
-        nominal=10.0,
     )
     viscous_friction: float = parameter(
-        "N.m.s/rad",
+        FRICTION.within(0.0, 1e9, nominal=1.0),
         0.0,
         "Viscous friction of the shaft: torque that opposes motion, per rad/s",
-        minimum=0.0,
-        maximum=1e9,
-        nominal=1.0,
     )
     start_angle: float = shaft_start("Shaft angle at the start; 0 is the rapiers' outer dead centre")
     start_at_speed: bool = parameter("1", True, "Start at speed; if false, from rest")
@@ -68,7 +59,7 @@ class DrivenShaft(Component):
     )
     torque: tuple[float, ...] = array(
         input_(
-            TORQUE,
+            LOAD_TORQUE,
             0.0,
             f"Load torque of mechanism {number}; positive acts backwards",
             source="*.shaft_torque",
@@ -77,7 +68,7 @@ class DrivenShaft(Component):
     )
     work: tuple[float, ...] = array(
         input_(
-            WORK,
+            LOAD_WORK,
             0.0,
             f"Work that mechanism {number} has taken from the shaft, at the end of the step",
             source="*.shaft_work",
@@ -87,7 +78,7 @@ class DrivenShaft(Component):
     )
     passed_torque: tuple[float, ...] = array(
         input_(
-            TORQUE,
+            LOAD_TORQUE,
             0.0,
             f"Part of torque_{number} whose work is not in work_{number}",
             source="*.passed_torque",

@@ -30,7 +30,7 @@ from ..physics.numerics.motion import (
 )
 from ..physics.shaft import carried
 from ..physics.warp import thread_extension
-from .quantities import FORCE, LENGTH, RATIO, STIFFNESS
+from .quantities import LENGTH, LOAD, MASS, RATIO, STIFFNESS, VELOCITY
 from .shared_declarations import frame_acceleration, frame_lift, frame_velocity
 from .terminals import CARRIER, FRAME
 from .threads import Threads
@@ -89,12 +89,9 @@ class HealdDamper(Threads):
     )
 
     carrier_mass: float = parameter(
-        "kg",
+        MASS.within(1e-3, 1e3, nominal=10.0),
         7.5,
         "Mass of the heald carrier with its healds (assumed: half of the published 15 kg)",
-        minimum=1e-3,
-        maximum=1e3,
-        nominal=10.0,
     )
     spring_stiffness: float = parameter(
         STIFFNESS.within(0.0, 1e12, nominal=1e4), 5960.0, "Stiffness of one of the four springs"
@@ -116,15 +113,13 @@ class HealdDamper(Threads):
     start_displacement: float = parameter(
         LENGTH.within(-1.0, 1.0), 0.0, "Displacement of the carrier at the start"
     )
-    start_rate: float = parameter(
-        "m/s", 0.0, "Rate of the displacement at the start", minimum=-1e3, maximum=1e3
-    )
+    start_rate: float = parameter(VELOCITY.within(-1e3, 1e3), 0.0, "Rate of the displacement at the start")
     inputs_at_step_end: bool = at_step_end()
     lift: float = frame_lift(0.0)
     velocity: float = frame_velocity()
     acceleration: float = frame_acceleration(10.0)
     warp_force: float = input_(
-        FORCE, 0.0, "Further load on the carrier, upwards, such as a warp model of your own"
+        LOAD, 0.0, "Further load on the carrier, upwards, such as a warp model of your own"
     )
     displacement: float = output(
         LENGTH, "Displacement of the carrier in its frame", nominal=0.01, rate="rate"

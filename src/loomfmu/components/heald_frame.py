@@ -9,7 +9,19 @@ from ..declaring.declarations import at_step_end, indicator, input_, output, par
 from ..declaring.variables import MIXED, NOTHING, Component, Problem, Terminal
 from ..physics.heald import crank_slope, lift_fraction, peg, slow_points_passed
 from ..physics.shaft import carried, too_far
-from .quantities import FORCE, GRAVITY, LENGTH, MASS, RATIO, ROTOR_ANGLE, SHARE, STROKE, TURNING, WORK
+from .quantities import (
+    FRAME_MASS,
+    FREQUENCY,
+    GRAVITY,
+    LENGTH,
+    LOAD,
+    LOAD_WORK,
+    RATIO,
+    ROTOR_ANGLE,
+    SHARE,
+    STROKE,
+    TURNING,
+)
 from .shaft_driven import turned_too_far
 from .terminals import FRAME, OF_ROTOR, ROTOR
 
@@ -38,9 +50,9 @@ class HealdFrame(Component):
     )
 
     stroke: float = parameter(STROKE, 0.098, "Stroke of the frame")
-    frame_mass: float = parameter(MASS, 15.0, "Mass of the frame with all that it holds")
+    frame_mass: float = parameter(FRAME_MASS, 15.0, "Mass of the frame with all that it holds")
     sprung_mass: float = parameter(
-        MASS,
+        FRAME_MASS,
         0.0,
         "Part of frame_mass that hangs on springs in the frame, such as the carrier of a damper",
         source="damper_#.carrier_mass",
@@ -91,14 +103,11 @@ class HealdFrame(Component):
         when="follow_lift",
     )
     lift_rate: float = input_(
-        "1/s",
+        FREQUENCY.within(-1e9, 1e9, nominal=10.0),
         10.471975511965976,
         "Rate of lift_fraction",
-        nominal=10.0,
         rate="lift_acceleration",
         when="follow_lift",
-        minimum=-1e9,
-        maximum=1e9,
     )
     lift_acceleration: float = input_(
         "1/s2",
@@ -123,14 +132,14 @@ class HealdFrame(Component):
         source="dobby.lift_slope",
     )
     load: float = input_(
-        FORCE,
+        LOAD,
         0.0,
         "Force on the frame of what hangs in it, such as carrier or warp; positive upwards",
         source="damper_#.transmitted_force|warp_#.frame_load",
         source_for="shaft_torque",
     )
     load_work: float = input_(
-        WORK,
+        LOAD_WORK,
         0.0,
         "Work of the frame so far on what exerts load, at the end of the step",
         when="use_load_work",

@@ -8,7 +8,7 @@ from ..declaring.declarations import at_step_end, input_, output, parameter, sta
 from ..declaring.variables import Component, Problem, Terminal
 from ..physics.heald_play import distance, until_bar, until_free
 from ..physics.numerics.motion import joined, moved_on
-from .quantities import FORCE, GRAVITY, LENGTH, RATIO
+from .quantities import GRAVITY, LENGTH, LOAD, MASS, RATIO, VELOCITY
 from .shared_declarations import frame_acceleration, frame_lift, frame_velocity
 from .terminals import FRAME
 
@@ -41,18 +41,15 @@ class HealdPlay(Component):
         "Play of the heald's loops on the bars, from end to end (assumed: none published)",
     )
     heald_mass: float = parameter(
-        "kg", 0.003, "Mass of a heald (assumed: none published)", minimum=1e-6, maximum=10.0, nominal=0.01
+        MASS.within(1e-6, 10.0, nominal=0.01), 0.003, "Mass of a heald (assumed: none published)"
     )
     restitution: float = parameter(
         RATIO.within(0.0, 0.99), 0.5, "Coefficient of restitution of a blow (assumed)"
     )
     least_speed: float = parameter(
-        "m/s",
+        VELOCITY.within(1e-9, 100.0, nominal=0.001),
         0.001,
         "Speed below which a heald stays on the bar and no blow is counted (assumed)",
-        minimum=1e-9,
-        maximum=100.0,
-        nominal=0.001,
     )
     gravity: float = parameter(GRAVITY, 9.80665, "Gravity")
     thread_count: int = parameter(
@@ -68,7 +65,7 @@ class HealdPlay(Component):
     velocity: float = frame_velocity("the bars")
     acceleration: float = frame_acceleration(-20.0, "the bars")
     warp_load: float = input_(
-        FORCE, 0.0, "Load of all threads on their healds, positive upwards", source="warp_#.frame_load"
+        LOAD, 0.0, "Load of all threads on their healds, positive upwards", source="warp_#.frame_load"
     )
     displacement: float = output(LENGTH, "Displacement of the heald in its play", nominal=0.001, rate="rate")
     rate: float = output("m/s", "Rate of the displacement")

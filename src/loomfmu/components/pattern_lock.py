@@ -23,6 +23,7 @@ from .quantities import (
     DISTANCE,
     DURATION,
     EITHER_WAY,
+    FORCE,
     HEAD_MASS,
     LENGTH,
     LEVER,
@@ -61,12 +62,9 @@ class PatternLock(ShaftDriven):
         ANGLE.within(1e-3, 2.0 * pi), 1.3089969389957472, "Shaft angle that the engagement takes"
     )
     spring_force: float = parameter(
-        "N",
+        FORCE.within(1e-6, 1e6, nominal=10.0),
         20.0,
         "Preload of the spring at the end of the turn; force of the pawl on its disc",
-        minimum=1e-6,
-        maximum=1e6,
-        nominal=10.0,
     )
     spring_stiffness: float = parameter(
         STIFFNESS.within(1e-3, 1e9, nominal=1e3), 2500.0, "Stiffness of the spring"

@@ -18,7 +18,7 @@ from ..physics.reed import (
     transmission_angle,
 )
 from ..physics.shaft import too_far
-from .quantities import ANGLE, INERTIA, LENGTH, LINK_LENGTH, LINK_PLACE, PHASE, RATIO, TURNING
+from .quantities import ANGLE, INERTIA, LENGTH, LINK_LENGTH, LINK_PLACE, MASS, PHASE, RATIO, TURNING
 from .shaft_driven import TOO_FAR, ShaftDriven
 from .shared_declarations import found_once
 
@@ -88,11 +88,9 @@ class ReedBeatUp(ShaftDriven):
         "Share of the run in which the servo speeds up, and in which it slows down (assumed)",
     )
     reed_mass: float = parameter(
-        "kg",
+        MASS.within(0.0, 1e4),
         1.0,
         "Mass that moves with the reed (none published: the torque is per kilogram)",
-        minimum=0.0,
-        maximum=1e4,
     )
     rocker_inertia: float = parameter(
         INERTIA.within(0.0, 1e4), 0.0, "Inertia of the rocker about its pivot (none published)"

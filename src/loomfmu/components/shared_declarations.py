@@ -2,8 +2,8 @@
 
 from typing import Any
 
-from ..declaring.declarations import Quantity, Unit, input_, output, parameter
-from .quantities import ANGLE, LENGTH, TENSION, TURNING
+from ..declaring.declarations import Unit, input_, output, parameter
+from .quantities import ACCELERATION, ANGLE, LENGTH, TENSION, TRAVEL, TURNING, VELOCITY
 
 HEAD = "the rapier head"
 OF_SHAFT = ("shaft_angle", "shaft_velocity", "shaft_acceleration")
@@ -31,12 +31,12 @@ def frame_lift(start: float, moved: str = "the frame") -> Any:
 
 def frame_velocity(moved: str = "the frame") -> Any:
     """The input for the velocity of a heald frame."""
-    return input_("m/s", 0.0, f"Velocity of {moved}", rate="acceleration", minimum=-1e9, maximum=1e9)
+    return input_(VELOCITY.within(-1e9, 1e9), 0.0, f"Velocity of {moved}", rate="acceleration")
 
 
 def frame_acceleration(start: float, moved: str = "the frame") -> Any:
     """The input for the acceleration of a heald frame."""
-    return input_("m/s2", start, f"Acceleration of {moved}", nominal=10.0, minimum=-1e15, maximum=1e15)
+    return input_(ACCELERATION.within(-1e15, 1e15, nominal=10.0), start, f"Acceleration of {moved}")
 
 
 # Inputs of what a rapier head moves. Where one mechanism takes the motion of two heads, `prefix` begins the
@@ -45,21 +45,21 @@ def frame_acceleration(start: float, moved: str = "the frame") -> Any:
 
 def head_travel(start: float = 0.9667, head: str = HEAD, prefix: str = "", owner: str = "") -> Any:
     """The input for the travel of a head."""
-    within = Quantity("m", minimum=-1e5, maximum=1e5)
+    within = TRAVEL.within(-1e5, 1e5)
     source = f"{owner}.travel" if owner else None
     return input_(within, start, f"Travel of {head}", rate=f"{prefix}velocity", source=source)
 
 
 def head_velocity(head: str = HEAD, prefix: str = "", owner: str = "") -> Any:
     """The input for the velocity of a head."""
-    within = Quantity("m/s", minimum=-1e9, maximum=1e9, nominal=10.0)
+    within = VELOCITY.within(-1e9, 1e9, nominal=10.0)
     source = f"{owner}.velocity" if owner else None
     return input_(within, 0.0, f"Velocity of {head}", rate=f"{prefix}acceleration", source=source)
 
 
 def head_acceleration(start: float = 0.0, head: str = HEAD, owner: str = "") -> Any:
     """The input for the acceleration of a head."""
-    within = Quantity("m/s2", minimum=-1e15, maximum=1e15, nominal=1000.0)
+    within = ACCELERATION.within(-1e15, 1e15, nominal=1000.0)
     source = f"{owner}.acceleration" if owner else None
     return input_(within, start, f"Acceleration of {head}", source=source)
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from ..declaring.declarations import parameter
 from ..declaring.variables import Component
-from .quantities import LENGTH, RATE, STROKE, TENSION, THREAD_LENGTH
+from .quantities import CREEP, LENGTH, STROKE, TENSION, THREAD_LENGTH
 
 
 @dataclass(slots=True)
@@ -45,7 +45,9 @@ class Threads(Component):
         nominal=100.0,
         source="warp_#.thread_stiffness",
     )
-    creep_rate: float = parameter(RATE, 5.0, "Creep rate n of a thread (assumed)", source="warp_#.creep_rate")
+    creep_rate: float = parameter(
+        CREEP, 5.0, "Creep rate n of a thread (assumed)", source="warp_#.creep_rate"
+    )
     relaxation_rate: float = parameter(
-        RATE, 10.0, "Relaxation rate r of a thread (assumed)", source="warp_#.relaxation_rate"
+        CREEP, 10.0, "Relaxation rate r of a thread (assumed)", source="warp_#.relaxation_rate"
     )

@@ -8,7 +8,18 @@ from ..declaring.declarations import auxiliary, output, parameter
 from ..declaring.variables import MIXED, NOTHING, Problem, Terminal
 from ..physics.linkage import four_bar_margin, spherical_margin, spherical_rocker, weft_motion, wrapped
 from ..physics.shaft import too_far
-from .quantities import ANGLE, INERTIA, LINK_LENGTH, LINK_PLACE, PHASE, RATIO, SMALL_MASS, WHEEL_DIAMETER
+from .quantities import (
+    ANGLE,
+    BELT_MASS,
+    INERTIA,
+    LINK_LENGTH,
+    LINK_PLACE,
+    PHASE,
+    RATIO,
+    SMALL_MASS,
+    TRAVEL,
+    WHEEL_DIAMETER,
+)
 from .shaft_driven import TOO_FAR, ShaftDriven
 from .shared_declarations import OF_SHAFT, found_once
 from .terminals import HEAD
@@ -83,19 +94,12 @@ class WeftInsertion(ShaftDriven):
         "Inertia that turns with the rapier wheel (none published; 0 leaves it out)",
     )
     belt_mass: float = parameter(
-        "kg/m",
+        BELT_MASS.within(0.0, 10.0),
         0.0,
         "Mass of the belt per length (0 leaves it out; BeltDynamics assumes 0.05 kg/m)",
-        minimum=0.0,
-        maximum=10.0,
-        nominal=0.1,
     )
     belt_length: float = parameter(
-        "m",
-        3.0,
-        "Length of the belt behind the head, all of which moves (assumed)",
-        minimum=0.0,
-        maximum=20.0,
+        TRAVEL.within(0.0, 20.0), 3.0, "Length of the belt behind the head, all of which moves (assumed)"
     )
     travel: float = output(
         "m", "Travel of the rapier head from its outer dead centre", rate="velocity", depends=OF_SHAFT

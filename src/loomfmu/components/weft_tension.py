@@ -37,7 +37,7 @@ from ..physics.weft_way import (
     travel_at,
     velocity_at,
 )
-from .quantities import ANGLE, DISTANCE, DURATION, LENGTH, RATIO, TENSION, YARN_FORCE
+from .quantities import ANGLE, DISTANCE, DURATION, FORCE, LENGTH, RATIO, TENSION, YARN_FORCE
 from .shaft_driven import TOO_FAR, ShaftDriven
 from .shared_declarations import head_acceleration, head_travel, head_velocity
 from .terminals import HEAD
@@ -92,12 +92,9 @@ class WeftTension(ShaftDriven):
         nominal=1e-5,
     )
     yarn_stiffness: float = parameter(
-        "N",
+        FORCE.within(1e-6, 1e6, nominal=100.0),
         75.0,
         "Tensile stiffness EA of the yarn, force per strain (assumed)",
-        minimum=1e-6,
-        maximum=1e6,
-        nominal=100.0,
     )
     retardation_time: float = parameter(
         DURATION.within(1e-9, 1.0, nominal=1e-4),

@@ -7,7 +7,7 @@ from typing import ClassVar
 from ..declaring.declarations import at_step_end, indicator, output, parameter
 from ..declaring.variables import NOTHING, Component, Terminal
 from ..physics.shaft import carried
-from .quantities import DISTANCE, LENGTH
+from .quantities import DISTANCE, LENGTH, TRAVEL
 from .shared_declarations import head_acceleration, head_travel, head_velocity
 from .terminals import GIVER, TAKER
 
@@ -26,11 +26,9 @@ class WeftTransfer(Component):
     )
 
     separation: float = parameter(
-        "m",
+        TRAVEL.within(0.0, 100.0),
         4.086,
         "Distance between the tips of the heads at their outer dead centres (identified)",
-        minimum=0.0,
-        maximum=100.0,
     )
     needed_overlap: float = parameter(
         DISTANCE, 0.04, "Overlap that the hooks need to hand the weft over (assumed: none is published)"
