@@ -47,9 +47,14 @@ UNTRACED = tuple(f"tests/{each}/" for each in ("attack", "benchmarks", "foreign"
 
 
 def leave_cases_to_the_slow(items: list[pytest.Item]) -> None:
-    """Of the cases of a test marked `few` mark all but a number, drawn by its name, as slow."""
+    """Of the cases of a test marked `few` mark all but a number, drawn by its name, as slow.
+
+    They are drawn from those that are not slow.
+    """
     cases: dict[tuple[str, object], list[pytest.Item]] = {}
     for item in items:
+        if item.get_closest_marker("slow"):
+            continue
         if (few := item.get_closest_marker("few")) and (case := getattr(item, "callspec", None)):
             given = case.params.get(few.kwargs.get("each"))
             cases.setdefault((item.nodeid.split("[")[0], given), []).append(item)

@@ -40,7 +40,7 @@ def write(pytester: pytest.Pytester, name: str, text: str) -> Path:
 
 @pytest.fixture(scope="module", autouse=True)
 def imported(fmu_cache: None) -> None:
-    """What a run imports: a pytest within this process forgets its own imports, and numpy cannot do with that."""
+    """Import what a run imports: a pytest within this process forgets what it imports."""
     run.evaluate(scenes.parse(SLOW, "slow"))
 
 
