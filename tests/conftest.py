@@ -1,5 +1,6 @@
 """What all tests share."""
 
+import os
 import random
 from collections import Counter
 from collections.abc import Callable, Iterator
@@ -32,6 +33,11 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 def pytest_configure(config: pytest.Config) -> None:
     settings.load_profile("all" if config.option.all else "quick")
+
+
+def pytest_xdist_auto_num_workers() -> int:
+    """Return one process more than cores, at most five: tests wait for programs, pages and time limits."""
+    return min(os.cpu_count() or 1, 4) + 1
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:
