@@ -238,6 +238,18 @@ def test_unconnected_it_answers_a_steady_acceleration():
     assert damper.carrier_acceleration == pytest.approx(10.0, rel=1e-12)
 
 
+def test_one_thread_moves_it_as_weaker_ones_do_together():
+    moved = []
+    for count in (0, 1, 8):  # powers of two: their products have the same bits
+        share = 1.0 / max(count, 1)
+        damper = HealdDamper(thread_count=count, pretension=8.0 * share, thread_stiffness=2048.0 * share)
+        damper.initialize(0.0)
+        for n in range(50):
+            assert damper.step(n * 1e-3, 1e-3) == 0
+        moved.append(damper.displacement)
+    assert moved[1] == moved[2] != moved[0]
+
+
 # Balance of energy
 
 
