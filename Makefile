@@ -8,7 +8,7 @@ INSTALL_PINNED := $(PIP) install --no-deps --require-hashes --requirement
 INSTALL_THIS := $(PIP) install --no-deps --no-build-isolation --editable .
 PIN := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-header --no-annotate
 # a file's tests stay in one process; where a process crashes, its test fails and the rest is not tried
-PARALLEL := --numprocesses=logical --maxprocesses=4 --dist=loadfile --max-worker-restart=0
+PARALLEL := --numprocesses=auto --dist=loadfile --max-worker-restart=0
 COPY := $(CURDIR)/build/checkout
 PACKAGED := src fmus sims pyproject.toml README.md LICENSE THIRD_PARTY.md
 FIGURES := $(CURDIR)/tests/validation/tables/attack.csv

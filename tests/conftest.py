@@ -1,5 +1,6 @@
 """What all tests share."""
 
+import os
 import random
 from collections import Counter
 from collections.abc import Callable, Iterator
@@ -34,6 +35,11 @@ def pytest_configure(config: pytest.Config) -> None:
     settings.load_profile("all" if config.option.all else "quick")
 
 
+def pytest_xdist_auto_num_workers() -> int:
+    """Return one process more than cores, at most five: tests wait for programs, pages and time limits."""
+    return min(os.cpu_count() or 1, 4) + 1
+
+
 def pytest_sessionstart(session: pytest.Session) -> None:
     """Build each FMU once, on all cores, before several processes share the tests."""
     if getattr(session.config.option, "numprocesses", None) and compiler():
@@ -47,9 +53,14 @@ UNTRACED = tuple(f"tests/{each}/" for each in ("attack", "benchmarks", "foreign"
 
 
 def leave_cases_to_the_slow(items: list[pytest.Item]) -> None:
-    """Of the cases of a test marked `few` mark all but a number, drawn by its name, as slow."""
+    """Of the cases of a test marked `few` mark all but a number, drawn by its name, as slow.
+
+    They are drawn from those that are not slow.
+    """
     cases: dict[tuple[str, object], list[pytest.Item]] = {}
     for item in items:
+        if item.get_closest_marker("slow"):
+            continue
         if (few := item.get_closest_marker("few")) and (case := getattr(item, "callspec", None)):
             given = case.params.get(few.kwargs.get("each"))
             cases.setdefault((item.nodeid.split("[")[0], given), []).append(item)

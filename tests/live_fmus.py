@@ -83,11 +83,15 @@ class Live:
         return self.get(*self.fmu.ports)
 
     def start(self, **values: Any) -> "Live":
-        assert self.call("setupExperiment", None, 0.0, None) == OK
-        assert self.set(**values) == OK
-        assert self.call("enterInitializationMode") == OK
-        assert self.call("exitInitializationMode") == OK
+        assert self.begin(**values) == OK
         return self
+
+    def begin(self, **values: Any) -> int:
+        """Initialize it; the status of the end of that."""
+        assert self.call("setupExperiment", None, 0.0, None) == OK
+        self.set(**values)
+        self.call("enterInitializationMode")
+        return self.call("exitInitializationMode")
 
     def step(self, time: float, step_size: float) -> int:
         return self.call("doStep", time, step_size)

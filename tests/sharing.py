@@ -57,13 +57,24 @@ def made_of_sources(folder: Path, make: Callable[[], bytes]) -> bytes:
     return made_file(FMUS, digest.hexdigest(), folder.name, make).read_bytes()
 
 
+# FMI 3 wraps the C of FMI 2: these have all kinds of variables between them, with and without a memory
+OF_FMI_3 = ("MainShaft", "DrivenShaft", "WeftInsertion", "BeltMonitor", "DobbyDrive")
+
+
+def native_fmu_of_fmi_3(name: str) -> fmus.Fmu:
+    """The native FMU of a component in FMI 3, for the machine's own platform."""
+    return fmus.load(fmus.file_of(COMPONENTS[name], "native", (host(),), 3))
+
+
 def native_fmus() -> dict[str, fmus.Fmu]:
     """All native FMUs, for the machine's own platform, in the session's cache.
 
-    One process builds them, on all cores, while the others wait.
+    One process builds them, and some of FMI 3, on all cores, while the others wait.
     """
     cache = cache_directory()
     cache.mkdir(parents=True, exist_ok=True)
     with FileLock(cache / "native.lock"), ThreadPoolExecutor(max_workers=4) as pool:
+        third = pool.map(native_fmu_of_fmi_3, OF_FMI_3)
         list(pool.map(lambda each: fmus.file_of(each, "native", (host(),)), COMPONENTS.values()))
+        list(third)
     return {name: fmus.of_component(name, "native") for name in COMPONENTS}

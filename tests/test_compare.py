@@ -244,18 +244,26 @@ def test_half_the_step_is_compared_without_interpolation(tmp_path: Path) -> None
     assert found and found.how.endswith(f"at the 1441 samples of {tmp_path}/a.h5")
 
 
-def test_other_grids_are_interpolated_and_refused_where_that_does_not_tell(tmp_path: Path) -> None:
-    a, b = pair(tmp_path, steps=1000)
+@pytest.mark.parametrize("turned", [False, True])
+@pytest.mark.parametrize(("unit", "factor"), [("m", 1.0), ("mm", 1e3)])
+def test_other_grids_are_interpolated_and_refused_where_that_does_not_tell(
+    tmp_path: Path, unit: str, factor: float, turned: bool
+) -> None:
+    def compared(shift: float, **options: Any) -> Any:
+        b = trace(tmp_path / "b.h5", lambda angle: np.sin(angle) + shift, steps=1000)
+        return loomfmu.compare(*((b, a) if turned else (a, b)), **options)
+
+    a = trace(tmp_path / "a.h5", lambda angle: factor * np.sin(angle), unit=unit)
     with pytest.raises(LoomfmuError, match=r"compared that closely.*allow a tolerance of") as refused:
-        loomfmu.compare(a, b)
+        compared(0.0)
     needed = float(str(refused.value).rpartition(" ")[2])
     # the line between samples of sin is off by h^2 / 8
     assert (2.0 * math.pi / 1000) ** 2 / 8.0 < needed < (2.0 * math.pi / 1000) ** 2
-    found = loomfmu.compare(a, b, tolerance=needed)
+    found = compared(0.0, tolerance=needed)
     assert found and "b.h5 is interpolated at" in found.how
-    off = trace(tmp_path / "c.h5", lambda angle: np.sin(angle) + 1e-3, steps=1000)
     # and the line's error
-    assert loomfmu.compare(a, off).differences[0].largest == pytest.approx(1e-3, rel=0.01)
+    largest = compared(1e-3).differences[0].largest
+    assert largest == pytest.approx(1e-3 * (1.0 if turned else factor), rel=0.01)
 
 
 def test_looms_of_other_speeds_are_compared_by_angle_or_by_time(tmp_path: Path) -> None:

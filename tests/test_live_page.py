@@ -262,6 +262,7 @@ def test_a_claim_without_a_value_fails_as_it_does_in_a_run(opened: Open, tmp_pat
     assert result.claims[1].note in row.inner_text()
 
 
+@pytest.mark.slow  # claims on the motor of test_live_claims.py have such signals
 def test_a_signal_that_is_not_known_is_not_judged_except_where_it_is(opened: Open, tmp_path: Path) -> None:
     """Six modes cannot follow the belt in mid-shed: what the run calls undecided, the page leaves to it."""
     margin = '[[claims]]\nkind = "above"\nsignal = "belt_motion.margin"\nbound = '

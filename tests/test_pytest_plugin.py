@@ -5,6 +5,9 @@ from pathlib import Path
 import pytest
 from live_fmus import in_a_process
 
+from loomfmu.cosim import run
+from loomfmu.cosim.scenes import scene as scenes
+
 pytest_plugins = ["pytester"]
 
 SCENE = """
@@ -35,14 +38,15 @@ def write(pytester: pytest.Pytester, name: str, text: str) -> Path:
     return path
 
 
-@pytest.fixture(autouse=True)
-def built(fmu_cache: None) -> None:
-    """The FMUs, built once for all tests."""
+@pytest.fixture(scope="module", autouse=True)
+def imported(fmu_cache: None) -> None:
+    """Import what a run imports: a pytest within this process forgets what it imports."""
+    run.evaluate(scenes.parse(SLOW, "slow"))
 
 
 def test_each_claim_is_a_test_and_nothing_is_written(pytester: pytest.Pytester) -> None:
     write(pytester, "slow.toml", SLOW)
-    result = pytester.runpytest_subprocess("slow.toml", "-v", "-p", "no:cacheprovider")
+    result = pytester.runpytest_inprocess("slow.toml", "-v", "-p", "no:cacheprovider")
     result.assert_outcomes(passed=2)
     result.stdout.fnmatch_lines(["slow.toml::the belt does not buckle PASSED*", "slow.toml::above PASSED*"])
     assert not [*pytester.path.rglob("*.h5"), *pytester.path.rglob("results")]
@@ -50,14 +54,14 @@ def test_each_claim_is_a_test_and_nothing_is_written(pytester: pytest.Pytester) 
 
 def test_an_undecided_claim_fails_with_its_error(pytester: pytest.Pytester) -> None:
     write(pytester, "near.toml", NEAR)
-    result = pytester.runpytest_subprocess("near.toml")
+    result = pytester.runpytest_inprocess("near.toml")
     result.assert_outcomes(passed=1, failed=1)
     result.stdout.fnmatch_lines(["undecided: *lowest margin", "distance:*", "error: *[0-9]*"])
 
 
 def test_a_failure_says_where_and_how_to_repeat_it(pytester: pytest.Pytester) -> None:
     write(pytester, "sims/fast.toml", FAST)
-    result = pytester.runpytest_subprocess("sims/fast.toml")
+    result = pytester.runpytest_inprocess("sims/fast.toml")
     result.assert_outcomes(passed=1, failed=1)
     result.stdout.fnmatch_lines(
         [
@@ -84,18 +88,12 @@ def test_traces_and_reports_are_kept_where_wanted(pytester: pytest.Pytester) -> 
     assert kept == ["fast.h5", "fast.html", "slow.h5"]
 
 
-def test_a_scene_runs_once(pytester: pytest.Pytester) -> None:
-    pytester.makeconftest(
-        """
-        from loomfmu.cosim import run
-        evaluate = run.evaluate
-        run.evaluate = lambda scene: print("a run") or evaluate(scene)
-        """
-    )
+def test_a_scene_runs_once(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
+    runs, evaluate = [], run.evaluate
+    monkeypatch.setattr(run, "evaluate", lambda scene: runs.append(scene) or evaluate(scene))
     write(pytester, "slow.toml", SLOW)
-    result = pytester.runpytest_subprocess("slow.toml", "-s")
-    result.assert_outcomes(passed=2)
-    assert result.stdout.str().count("a run") == 1
+    pytester.runpytest_inprocess("slow.toml").assert_outcomes(passed=2)
+    assert len(runs) == 1
 
 
 @pytest.mark.few(1)
@@ -111,35 +109,33 @@ def test_a_scene_that_cannot_be_read_is_an_error_of_one_line(
     pytester: pytest.Pytester, text: str, said: str
 ) -> None:
     write(pytester, "bad.toml", text)
-    result = pytester.runpytest_subprocess("bad.toml")
+    result = pytester.runpytest_inprocess("bad.toml")
     result.assert_outcomes(errors=1)
     result.stdout.fnmatch_lines([said])
     assert "Traceback" not in result.stdout.str()
 
 
-@pytest.mark.slow
 def test_other_files_are_left_alone(pytester: pytest.Pytester) -> None:
     write(pytester, "pyproject.toml", "[project]\nname = 'theirs'\n")
     write(pytester, "slow.toml", SLOW)  # not named
     write(pytester, "test_theirs.py", "def test_it(): pass\n")
-    pytester.runpytest_subprocess().assert_outcomes(passed=1)
-    theirs = pytester.runpytest_subprocess("pyproject.toml")
+    pytester.runpytest_inprocess().assert_outcomes(passed=1)
+    theirs = pytester.runpytest_inprocess("pyproject.toml")
     assert theirs.ret == pytest.ExitCode.USAGE_ERROR  # as without the plugin
 
 
-@pytest.mark.slow
 def test_the_configuration_names_scenes(pytester: pytest.Pytester) -> None:
     pytester.makeini("[pytest]\nloomfmu_scenes = sims/*.toml\n")
     for name in ("sims/slow.toml", "sims/sub/slow.toml", "slow.toml"):
         write(pytester, name, SLOW)
-    result = pytester.runpytest_subprocess("--collect-only", "-q")
+    result = pytester.runpytest_inprocess("--collect-only", "-q")
     result.stdout.fnmatch_lines(["sims/slow.toml::the belt does not buckle", "sims/slow.toml::above"])
     assert "sub/" not in result.stdout.str() and "2 tests collected" in result.stdout.str()
 
 
 def test_a_scene_without_claims_is_tested_to_run(pytester: pytest.Pytester) -> None:
     write(pytester, "bare.toml", SLOW.partition("[[claims]]")[0])
-    result = pytester.runpytest_subprocess("bare.toml", "-v")
+    result = pytester.runpytest_inprocess("bare.toml", "-v")
     result.assert_outcomes(passed=1)
     result.stdout.fnmatch_lines(["bare.toml::runs PASSED*"])
 

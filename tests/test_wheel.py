@@ -1,5 +1,6 @@
 """The wheel: whoever installs it needs no compiler and no checkout."""
 
+import json
 import os
 import shutil
 import subprocess
@@ -11,6 +12,8 @@ from pathlib import Path
 
 import pytest
 
+from loomfmu.components import COMPONENTS
+from loomfmu.cosim.importing.built import file_of
 from loomfmu.fmi.native.platforms import host
 from loomfmu.traces import Trace
 
@@ -27,13 +30,18 @@ speed = "450 rev/min"
 kind = "lowest_margin"
 bound = 0.05
 """
-# for this platform alone, and what the scenes below need: the others take minutes longer to compile, and are
-# made by the same code
-BUILD = f"""
+NEEDED = ("BeltMonitor", "MainShaft", "WeftInsertion")  # by the scenes below
+# for this platform alone, of FMUs that the tests have built of the same sources
+BUILD = """
+import json, shutil, sys
 from loomfmu.fmi import shipping
-needed = ("BeltMonitor", "MainShaft", "WeftInsertion")
-shipping.COMPONENTS = {{name: shipping.COMPONENTS[name] for name in needed}}
-shipping.build_all(({host()!r},))
+made = json.loads(sys.argv[1])
+def build(name, directory, platforms, fmi):
+    directory.mkdir(parents=True, exist_ok=True)
+    shutil.copy(made[f"{name} {fmi}"], directory)
+shipping.build_native = build
+shipping.COMPONENTS = {name: shipping.COMPONENTS[name] for name in sys.argv[3:]}
+shipping.build_all((sys.argv[2],))
 """
 COMMAND = "import sys; from loomfmu.cli import main; sys.exit(main())"
 
@@ -66,7 +74,13 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
             shutil.copytree(ROOT / part, copy / part, ignore=shutil.ignore_patterns("__pycache__", "shipped"))
         else:
             shutil.copy(ROOT / part, copy)
-    called(sys.executable, "-c", BUILD, cwd=copy, PYTHONPATH=str(copy / "src"))
+    made = {
+        f"{name} {fmi}": str(file_of(COMPONENTS[name], "native", (host(),), fmi))
+        for name in NEEDED
+        for fmi in (2, 3)
+    }
+    arguments = (json.dumps(made), host(), *NEEDED)
+    called(sys.executable, "-c", BUILD, *arguments, cwd=copy, PYTHONPATH=str(copy / "src"))
     flags = ("--quiet", "--no-deps", "--no-build-isolation", "--no-index", "--wheel-dir", "dist", ".")
     called(sys.executable, "-m", "pip", "wheel", *flags, cwd=copy)
     (built,) = (copy / "dist").glob("*.whl")

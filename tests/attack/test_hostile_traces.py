@@ -49,7 +49,7 @@ def shown(path: Path, capsys: pytest.CaptureFixture[str]) -> int:
 CRAFTED = dict(hostile_traces.crafted())
 
 
-@pytest.mark.few(4)
+@pytest.mark.few(2)
 @pytest.mark.parametrize("name", CRAFTED)
 def test_what_somebody_crafts_is_refused(
     name: str,

@@ -45,8 +45,13 @@ def find(results: Path, name: str) -> list[dict[str, Any]]:
     return records.read(results / written.FOLDER, name)
 
 
-@pytest.mark.few(3)
-@pytest.mark.parametrize("name", written.BENCHMARKS)
+QUICKEST = "pruning"
+
+
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(each, marks=[pytest.mark.slow] * (each != QUICKEST)) for each in written.BENCHMARKS],
+)
 def test_a_benchmark_gives_tables_of_finite_numbers(done: Done, name: str) -> None:
     results = done(name)
     rows = find(results, name) or find(results, f"{name}_steps")

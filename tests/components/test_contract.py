@@ -2,7 +2,6 @@
 
 import math
 import random
-import re
 
 import pytest
 from driving import (
@@ -52,16 +51,12 @@ def finite(component):
 
 
 @every_component
-def test_what_is_said_of_variables_names_variables(component):
-    outputs = {variable.name for variable in declared(component) if variable.causality == "output"}
-    held = {v.name: v.lowest_of or v.highest_of for v in declared(component) if v.lowest_of or v.highest_of}
-    assert set(held) | set(held.values()) | set(component.windows) <= outputs
-    assert component.keeps in (NOTHING, EXTREMES, MOTION)
+def test_traits(component):
+    """Beside what `own.declared` finds of any component, which is tested of ours as well."""
+    held = any(v.lowest_of or v.highest_of for v in declared(component))
     assert held or component.keeps != EXTREMES  # an integrator may hold extremes as well
     assert component.origin in (PUBLISHED, MIXED, OWN)
     assert bool(component.accuracy) == (component.keeps == MOTION)  # the others are exact: a test below
-    assert not held or component.keeps != NOTHING
-    assert component.keeps == MOTION or not any(v.carried for v in declared(component))
     assert set(component.unsteady) <= {v.name for v in declared(component) if v.causality == "parameter"}
 
 
@@ -107,22 +102,10 @@ def test_what_keeps_no_motion_shows_what_its_inputs_ask_for(component, seed):
 
 @every_component
 def test_declaration(component):
-    variables = declared(component)
-    names = [variable.name for variable in variables]
-    assert len(set(names)) == len(names)
-    for variable in variables:
-        assert re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", variable.name)
-        assert variable.causality in ("parameter", "input", "output", "local")
-        assert variable.variability in ("fixed", "tunable", "continuous", "discrete")
-        assert variable.type in (float, int, bool)
+    for variable in declared(component):
         assert variable.type is float or variable.variability != "continuous", variable.name
-        assert units.unit(variable.unit).factor == 1.0, "values are SI"
-        assert units.unit(variable.display).dimension == units.unit(variable.unit).dimension
         assert math.isfinite(variable.start)
-        if variable.settable:
-            assert variable.complaint(variable.start) == ""
-        if variable.nominal is not None:
-            assert variable.nominal > 0.0
+        assert variable.nominal is None or variable.nominal > 0.0
 
 
 @every_component
@@ -135,18 +118,6 @@ def test_descriptions(component):
         assert "\n" not in text
         assert not text.endswith(".")
     assert component.__doc__.splitlines()[0].endswith(".")
-
-
-@every_component
-def test_variables_refer_to_variables(component):
-    known = {variable.name: variable for variable in declared(component)}
-    for variable in known.values():
-        if variable.rate is not None:
-            rate = known[variable.rate]
-            assert rate.causality == variable.causality
-            assert units.unit(rate.unit).dimension == units.unit(variable.unit).rate
-        for name in variable.depends or ():
-            assert known[name].causality == "input"
 
 
 @every_component
@@ -251,15 +222,7 @@ def test_runs_alone(component, given):
     for n in range(1000):
         assert instance.step(n * 1e-3, 1e-3) == 0
         finite(instance)
-
-
-@every_component
-def test_shows_something_alone(component):
     # dropped into a tool and run, with nothing connected, it is not all zeros
-    instance = component()
-    instance.initialize(0.0)
-    for n in range(1000):
-        instance.step(n * 1e-3, 1e-3)
     assert any(values(instance, "output").values())
 
 

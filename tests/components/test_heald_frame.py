@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from loomfmu.components import DobbyDrive, HealdFrame
+from loomfmu.components import HealdFrame
 from loomfmu.physics.heald import lift_fraction
 
 
@@ -56,21 +56,6 @@ def test_a_frame_that_holds_does_not_move(peg):
         assert not frame.moving
 
 
-def test_plain_weave_is_the_dobbys_own_lift():
-    # a frame that changes at every pick goes on a cosine of the rotor's angle, without breaks
-    frame = frame_of([0, 1], stroke=0.098)
-    dobby = DobbyDrive(speed=50.0)
-    dobby.initialize(0.0)
-    for n in range(400):
-        dobby.step(n * 1e-3, 1e-3)
-        placed(frame, dobby.rotor_angle, dobby.rotor_velocity, dobby.rotor_acceleration)
-        # the rotor's angle, up to 20 rad, is brought to one pick: rounding
-        assert frame.lift == pytest.approx(0.098 * dobby.lift_fraction, abs=1e-15)
-        assert frame.velocity == pytest.approx(0.098 * dobby.lift_rate, abs=1e-13)
-        assert frame.acceleration == pytest.approx(0.098 * dobby.lift_acceleration, abs=1e-11)
-        assert frame.moving
-
-
 def test_the_event_is_a_change_of_sign_at_each_slow_point_and_nowhere_else():
     frame = frame_of([1, 0])
     signs = [placed(frame, pi * (n + 0.5) / 4).slow_point_event > 0.0 for n in range(-32, 32)]
@@ -104,13 +89,6 @@ def test_outputs_belong_together():
     # the angle has been rounded to 2e-15
     assert falling.lift == pytest.approx(0.12 * (1.0 - share), abs=1e-15)
     assert falling.velocity == pytest.approx(-0.12 * rate, abs=1e-13)
-
-
-def test_warp_is_symmetric_about_the_closed_shed():
-    frame = frame_of([0, 1])
-    heights = [placed(frame, angle).warp_height for angle in (0.0, pi, 2 * pi + 1e-9)]
-    # 98 mm and a sixth of it: rounding
-    assert heights == pytest.approx([-0.098 / 12, 0.0, 0.098 / 12], abs=1e-15)
 
 
 def test_default_pattern_is_plain_weave_half_a_move_on():

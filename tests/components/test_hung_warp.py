@@ -7,7 +7,7 @@ import pytest
 from hung_warp_reference import Hung, stepped
 from looms import RPM
 
-from loomfmu.components import HealdDamper, WarpTension, heald_damper
+from loomfmu.components import HealdDamper, heald_damper
 from loomfmu.physics.hung_warp import settled_load
 
 
@@ -32,30 +32,6 @@ def test_carrier_and_threads_against_a_monolithic_integration(rpm, turns, contac
     assert errors[90] < 5e-7
     # fourth order: 8^4 times less, less what the jumps of the frame's third rate leave
     assert errors[720] < 1e-8
-
-
-def test_a_damper_without_threads_is_as_before():
-    with_none, warped = HealdDamper(), HealdDamper(thread_count=1)
-    for damper in (with_none, warped):
-        damper.initialize(0.0)
-        damper.step(0.0, 0.01)
-    assert with_none.warp_load == 0.0
-    assert warped.warp_load != 0.0
-
-
-def test_the_load_is_that_of_the_threads_at_the_carrier():
-    # held still, the threads relax as WarpTension has them: the same law, solved in another component
-    held = {"lift": 0.098, "velocity": 0.0, "acceleration": 0.0}
-    damper = HealdDamper(inputs_at_step_end=True, thread_count=1260, spring_stiffness=1e9, **held)
-    damper.initialize(0.0)
-    warp = WarpTension(inputs_at_step_end=True, **held)
-    for n in range(50):
-        damper.step(1e-4 * n, 1e-4)
-    warp.lift = damper.carrier_lift
-    warp.initialize(0.0)
-    warp.step(0.0, 50e-4)
-    # the springs yield by 300 N / 4e9 N/m = 8e-8 m, which changes the load by 1e-5 at most while they swing
-    assert damper.warp_load == pytest.approx(warp.frame_load, rel=1e-5)
 
 
 @pytest.mark.parametrize("displacement", [1e300, -1e300])

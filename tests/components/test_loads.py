@@ -268,14 +268,3 @@ def test_a_frame_that_holds_takes_no_torque():
         frame = driven(dobby, HealdFrame(pattern_1=3, load=-100.0, follow_lift=follow, **FRAME))
         assert frame.drive_force == pytest.approx(17.0 * 9.81 + 100.0)
         assert (frame.rotor_torque, frame.shaft_torque) == (0.0, 0.0)
-
-
-def test_crank_and_lift_give_the_same_torques():
-    for theta in (0.3, 2.0, 5.0, 7.0, 10.0):
-        dobby = on_shaft(DobbyDrive(slow_point=0.0, **SHAFT), theta, 40.0, 100.0)
-        by_crank, by_lift = (
-            driven(dobby, HealdFrame(load=50.0, follow_lift=follow, **FRAME)) for follow in (False, True)
-        )
-        for name in ("rotor_torque", "shaft_torque"):
-            # rounding of the rotor's angle
-            assert getattr(by_lift, name) == pytest.approx(getattr(by_crank, name), rel=1e-12)

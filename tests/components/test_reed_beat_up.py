@@ -115,14 +115,6 @@ def test_limits_are_where_the_reed_turns(name):
 
 
 @every_machine
-def test_beats_up_at_the_beat_up_angle(given):
-    reed = placed(given.get("beat_up_angle", 0.0), given)
-    assert reed.position == pytest.approx(reed.front_limit, abs=1e-15)
-    assert reed.velocity == pytest.approx(0.0, abs=1e-15)
-    assert reed.acceleration < 0.0
-
-
-@every_machine
 def test_transmission_angle_is_that_of_the_triangle(given):
     found = []
     for theta in ANGLES:
@@ -143,13 +135,6 @@ def test_transmission_angle_is_that_of_the_triangle(given):
 
 def reference_of(given):
     return reference(next(name for name, machine in MACHINES.items() if machine is given))
-
-
-def test_turning_the_crank_the_other_way_mirrors_the_motion():
-    for theta in ANGLES[::30]:
-        one, other = placed(theta), placed(-theta, {"crank_direction": -1})
-        assert other.position == pytest.approx(one.position, abs=1e-15)
-        assert other.velocity == pytest.approx(-one.velocity, abs=1e-15)
 
 
 # What it refuses

@@ -1,6 +1,5 @@
 """Components as self-contained modules: the same results in plain Python, and translated to C."""
 
-import ast
 import random
 import shutil
 
@@ -49,14 +48,6 @@ def in_step(component, other, seed, compare):
         assert other.step(time, step_size) == problem
         compare(one, other)
         time += step_size
-
-
-@every_component
-def test_flattened_text_imports_math_alone(component):
-    tree = ast.parse(flatten(component))
-    imported = [node for node in ast.walk(tree) if isinstance(node, ast.Import | ast.ImportFrom)]
-    assert [getattr(node, "module", None) for node in imported] in ([], ["math"])  # none where none is needed
-    assert flatten(component) == flatten(component)
 
 
 @pytest.mark.few(1, each="component")

@@ -306,24 +306,6 @@ def test_slack_is_timed_exactly(steps):
     assert weft.slack
 
 
-@pytest.mark.no_cover
-def test_the_brake_holds_and_yields_without_chatter():
-    """Strain and tension behind the eyes are continuous while the brake closes and opens again."""
-    closing = {f"brake_program_{n}": 5.0 if 6 < n < 10 else 1.0 for n in range(1, 25)}
-    seen = []
-    drawn(
-        steps=3600,
-        end=pi / SPEED,
-        pick_up_travel=0.0,
-        watch=lambda _now, weft: seen.append((weft.strain, weft.eye_tension)),
-        **closing,
-    )
-    strains, tensions = np.array(seen).T
-    turns = np.sum(np.diff(np.sign(np.diff(tensions[20:]))) != 0)
-    assert turns <= 6  # rise and fall of the program and of the speed, no more
-    assert np.abs(np.diff(strains)).max() < 1e-3
-
-
 def test_a_weft_that_is_carried_at_the_start_is_drawn_steadily():
     weft = WeftTension(travel=1.0, velocity=10.0, acceleration=0.0, **{"air_friction": 0.0})
     assert weft.initialize(0.0) == 0
@@ -331,18 +313,6 @@ def test_a_weft_that_is_carried_at_the_start_is_drawn_steadily():
     late = WeftTension(travel=1.0, velocity=-10.0)
     assert late.initialize(0.0) == 0
     assert late.carried and late.length == pytest.approx(0.6 + 1.0 - 0.1)
-
-
-def test_alone_it_has_a_constant_tension():
-    weft = WeftTension()
-    assert weft.initialize(0.0) == 0
-    tension = weft.tension
-    assert tension == pytest.approx(exp(0.1 * pi) * (0.05 + 0.2), rel=1e-12)
-    for n in range(5):
-        assert weft.step(1e3 * n, 1e3) == 0
-        assert weft.tension == pytest.approx(tension, rel=1e-12)
-    assert weft.highest_tension == pytest.approx(tension, rel=1e-12)
-    assert (weft.slack, weft.longest_slack) == (False, 0.0)
 
 
 # Motions of a loom that are not picks

@@ -79,46 +79,6 @@ def test_harmonic_heads_overlap_in_closed_form():
 
 
 @every_machine
-def test_mirrored_rapiers_meet_at_half_a_turn(name):
-    motion, transfer = head(name), WeftTransfer(**parameters("WeftTransfer", machine=name))
-    fastest = 0.0
-    for k in range(361):
-        travel, velocity, acceleration = motion(2.0 * pi * k / 360)
-        met(transfer, (travel, velocity, acceleration), (travel, velocity, acceleration))
-        # the same operations on the same numbers: no tolerance
-        assert transfer.overlap == travel + travel - transfer.separation
-        assert transfer.closing_velocity == 2.0 * velocity
-        assert transfer.closing_acceleration == 2.0 * acceleration
-        assert transfer.offset == transfer.offset_velocity == 0.0
-        fastest = max(fastest, abs(velocity))
-    met(transfer, motion(pi), motion(pi))
-    # the velocity there is 0 but for the rounding of pi and of a few terms
-    assert abs(transfer.closing_velocity) < 1e-12 * fastest
-    assert transfer.closing_acceleration < 0.0
-
-
-@every_machine
-@pytest.mark.parametrize("lead", [-0.1, 1e-3, 0.05])
-def test_a_phase_shifts_the_meeting_by_half_of_it(name, lead):
-    # the motion of a head is symmetric about its dead centre, so that the sum of two is about their middle
-    giver, taker = head(name), head(name, lead)
-    transfer = met(
-        WeftTransfer(**parameters("WeftTransfer", machine=name)),
-        *(each(pi - 0.5 * lead) for each in (giver, taker)),
-    )
-    travel, velocity, _acceleration = giver(pi + 0.5 * lead)
-    # sums of travels of up to 3 m, velocities of up to 3 m/rad
-    assert transfer.overlap == pytest.approx(2.0 * travel - transfer.separation, abs=5e-12)
-    assert transfer.closing_velocity == pytest.approx(0.0, abs=1e-12)
-    assert transfer.offset == pytest.approx(0.0, abs=1e-12)
-    assert transfer.offset_velocity == pytest.approx(-velocity, abs=1e-12)
-    most = transfer.overlap
-    for beside in (-1e-3, 1e-3):
-        met(transfer, *(each(pi - 0.5 * lead + beside) for each in (giver, taker)))
-        assert transfer.overlap < most
-
-
-@every_machine
 def test_overlap_of_the_published_machines(name):
     row = MACHINES[name]
     separation = MP.mpf(row["width_m"]) + 2 * MP.mpf(row["idle_travel_mm"]) / 1000

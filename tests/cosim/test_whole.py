@@ -23,6 +23,7 @@ from loomfmu.cosim.scenes.scene import Scene
 
 SIMS = Path(__file__).parents[2] / "sims"
 SCENES = sorted([*SIMS.glob("*.toml"), *SIMS.glob("beyond_the_limit/*.toml")])
+LARGE = {"belt_motion", "full_loom"}  # each takes seconds to compile
 LOOPED = {"driven_loom", "light_shaft"}  # scenes with an algebraic loop
 DEMO = SIMS / "wl680_3600.toml"
 pytestmark = [
@@ -83,7 +84,10 @@ of_fmi_2 = pytest.mark.parametrize("belt", [2], indirect=True)
 
 
 @pytest.mark.few(1)
-@pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    "path",
+    [pytest.param(path, marks=[pytest.mark.slow] * (path.stem in LARGE), id=path.stem) for path in SCENES],
+)
 def test_it_gives_the_bits_of_the_run(tmp_path: Path, path: Path) -> None:
     scene = loaded(path)
     if path.stem in LOOPED:
@@ -104,14 +108,6 @@ def test_it_does_so_in_fmi_3(tmp_path: Path) -> None:
     one = Whole(exported(scene, tmp_path, fmi=3), tmp_path / "unpacked")
     assert one.fmi == 3
     same(one.instance().along(scene.steps, scene.step_size), traced(scene, tmp_path))
-
-
-@pytest.mark.few(1)
-@pytest.mark.parametrize("every", [7, 1440])
-def test_a_communication_step_may_hold_many_steps(demo: Whole, demo_run: Signals, every: int) -> None:
-    scene = loaded(DEMO)
-    steps = scene.steps - scene.steps % every
-    same(demo.instance().along(steps, scene.step_size, every), demo_run, every)
 
 
 def test_a_step_that_ends_off_the_grid_is_made_to_its_end(demo: Whole) -> None:
@@ -184,13 +180,6 @@ def test_a_parameter_has_the_effect_of_set(
     found = instance.along(scene.steps, scene.step_size)
     instance.free()
     same(found, traced(scene, tmp_path_factory.mktemp("set")))
-
-
-@pytest.mark.slow
-def test_what_turns_unevenly_can_be_chosen_in_the_fmu(tmp_path: Path, demo: Whole) -> None:
-    scene = loaded(DEMO, shaft__ramp_duration=0.1, shaft__ripple_amplitude=0.02)
-    instance = demo.instance(shaft__ramp_duration=0.1, shaft__ripple_amplitude=0.02)
-    same(instance.along(scene.steps, scene.step_size), traced(scene, tmp_path))
 
 
 def test_a_state_is_saved_restored_and_serialized(demo: Whole) -> None:
@@ -333,10 +322,12 @@ def test_mechanisms_of_ones_own_and_tables_of_all_types(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("fmi", [2, 3])
-def test_its_sources_compile_without_a_warning(tmp_path: Path, demo: Whole, fmi: int) -> None:
+@pytest.mark.parametrize("whole_loom", [False, pytest.param(True, marks=pytest.mark.slow)])
+def test_its_sources_compile_without_a_warning(tmp_path: Path, whole_loom: bool, fmi: int) -> None:
     if shutil.which("gcc") is None:
         pytest.skip("gcc is not installed")
-    one = demo if fmi == 2 else Whole(exported(gates(tmp_path), tmp_path, fmi), tmp_path / "unpacked")
+    scene = loaded(DEMO) if whole_loom else gates(tmp_path)
+    one = Whole(exported(scene, tmp_path, fmi), tmp_path / "unpacked")
     warnings = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"]
     options = ["-std=c99", "-O1", "-ffp-contract=off", "-fPIC", "-shared", "-o", str(tmp_path / "x.so")]
     command = ["gcc", *warnings, *options, f"fmi{fmi}.c", "-lm"]

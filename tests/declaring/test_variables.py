@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from loomfmu.declaring.declarations import input_, output, parameter, state
+from loomfmu.declaring.declarations import Quantity, input_, output, parameter, state
 from loomfmu.declaring.variables import Component, Problem, variables_of
 
 
@@ -83,6 +83,14 @@ def test_declared_roles(name):
 )
 def test_attributes_come_through(name, attribute, value):
     assert getattr(BY_NAME[name], attribute) == value
+
+
+def test_a_quantity_gives_what_a_declaration_leaves_out():
+    bore = Quantity("m", "mm", nominal=0.1).within(0.0, 1.0)
+    given = parameter(bore, 0.5, "Bore", maximum=2.0).metadata
+    assert given == parameter("m", 0.5, "Bore", display="mm", minimum=0.0, maximum=2.0, nominal=0.1).metadata
+    assert output(bore, "Bore").metadata == output("m", "Bore", display="mm", nominal=0.1).metadata
+    assert bore.within(0.0, 2.0, nominal=1e-3).nominal == 1e-3
 
 
 def test_choices_bound_their_number():

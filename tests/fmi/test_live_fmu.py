@@ -23,7 +23,6 @@ from loomfmu.declaring.declarations import output, parameter
 from loomfmu.declaring.variables import Component, variables_of
 from loomfmu.fmi import fmu_files, live_fmu
 from loomfmu.fmi.description import documentation
-from loomfmu.fmi.source import SourceError, flatten
 
 every_fmu = pytest.mark.parametrize("name", NAMES)
 
@@ -137,13 +136,6 @@ def test_its_python_imports_little_and_bears_a_name_of_its_own(name: str) -> Non
     assert imported - own - {"logging"} <= little
     parts = ("component", "live_slave", "live_state", "live_wrapper", "None")  # None: the package itself
     assert own <= {f"{package}.{part}" for part in parts}
-
-
-@every_fmu
-def test_the_component_in_it_imports_math_alone(name: str) -> None:
-    tree = ast.parse(flatten(COMPONENTS[name]))
-    imports = [node for node in ast.walk(tree) if isinstance(node, ast.Import | ast.ImportFrom)]
-    assert [getattr(node, "module", None) for node in imports] in ([], ["math"])
 
 
 @every_fmu
@@ -281,19 +273,6 @@ def test_value_references_and_identity_are_those_of_the_file(name: str) -> None:
     assert fmu.guid == live_fmu.guid(COMPONENTS[name])
     assert [port.reference for port in fmu.ports.values()] == list(range(1, len(fmu.ports) + 1))
     assert fmu.identifier == name
-
-
-def test_a_component_that_cannot_stand_alone_is_refused() -> None:
-    @dataclass(slots=True)
-    class Tied(Original):
-        """A shaft."""
-
-        def step(self, time: float, step_size: float) -> int:
-            """Go on."""
-            return len(str(np.zeros(3)))
-
-    with pytest.raises(SourceError, match="step uses np, which is neither a function of the physics"):
-        flatten(Tied)
 
 
 # ---- reference results

@@ -1,5 +1,6 @@
 """Flattening: what a module of one component holds, and what cannot be carried into one."""
 
+import ast
 import math
 import random
 from dataclasses import dataclass
@@ -231,4 +232,5 @@ def test_every_component_flattens_to_the_same_text_each_time(component):
     assert text == flatten(component)
     assert component.__name__ in text.splitlines()[0]
     assert "loomfmu." not in text.split("\n", 1)[1]
-    compile(text, component.__name__, "exec")
+    imports = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Import | ast.ImportFrom)]
+    assert [getattr(node, "module", None) for node in imports] in ([], ["math"])  # none where none is needed

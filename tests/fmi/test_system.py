@@ -6,8 +6,7 @@ import pytest
 
 from loomfmu.components import COMPONENTS
 from loomfmu.declaring.variables import variables_of
-from loomfmu.fmi.description.model_description import model_description
-from loomfmu.fmi.description.model_description3 import model_description3
+from loomfmu.fmi.description.model_description import model_description, model_description3
 from loomfmu.fmi.description.terminals import FILE, terminal_files
 from loomfmu.fmi.system.system import Drive, Part, System, component_of
 

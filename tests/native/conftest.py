@@ -1,17 +1,26 @@
 """Tests here run native FMUs of the machine's own platform: built once, in a cache of their own."""
 
 import sys
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable
+from functools import cache
 from importlib.util import find_spec
 
 import foreign_motors
 import pytest
 from natives import STEPPED, Instance, Native, Native3
-from sharing import native_fmus
+from sharing import OF_FMI_3, native_fmu_of_fmi_3, native_fmus
 
-from loomfmu.components import COMPONENTS
 from loomfmu.cosim.importing import fmus
-from loomfmu.cosim.importing.built import file_of
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Leave most FMUs of FMI 3 to the slow tests: compiling all takes longer than what is tested of them."""
+    for item in items:
+        given = item.callspec.params if hasattr(item, "callspec") else {}
+        left = given.get("fmi") == 3 and given.get("name", OF_FMI_3[0]) not in OF_FMI_3
+        if left and "package" in getattr(item, "fixturenames", ()):
+            item.add_marker(pytest.mark.slow)
 
 
 @pytest.fixture(scope="session")
@@ -36,20 +45,10 @@ def built(fmu_cache: None, tools: None) -> dict[str, fmus.Fmu]:
 
 
 @pytest.fixture(scope="session")
-def built3(built: dict[str, fmus.Fmu]) -> dict[str, fmus.Fmu]:
-    """All native FMUs of FMI 3."""
-
-    def build(name: str) -> fmus.Fmu:
-        return fmus.load(file_of(COMPONENTS[name], "native", ("linux64",), 3))
-
-    with ThreadPoolExecutor(max_workers=4) as pool:
-        return dict(zip(COMPONENTS, pool.map(build, COMPONENTS), strict=True))
-
-
-@pytest.fixture
-def package(request: pytest.FixtureRequest):
+def package(built: dict[str, fmus.Fmu]) -> Callable[[str, int], fmus.Fmu]:
     """The native FMU of a component in either FMI."""
-    return lambda name, fmi: request.getfixturevalue("built" if fmi == 2 else "built3")[name]
+    of_fmi_3 = cache(native_fmu_of_fmi_3)
+    return lambda name, fmi: built[name] if fmi == 2 else of_fmi_3(name)
 
 
 @pytest.fixture

@@ -21,9 +21,10 @@ every_fmu = pytest.mark.parametrize("name", COMPONENTS)
 TYPES = {float: "Float64", int: "Int64", bool: "Boolean"}
 
 
+@pytest.mark.parametrize("fmi", [3])
 @every_fmu
-def test_its_variables_are_those_of_fmi_2_and_the_time(built, built3, name):
-    root = ElementTree.parse(built3[name].directory / "modelDescription.xml").getroot()
+def test_its_variables_are_those_of_fmi_2_and_the_time(built, package, name, fmi):
+    root = ElementTree.parse(package(name, fmi).directory / "modelDescription.xml").getroot()
     listed = root.find("ModelVariables")
     found = {each.get("name"): each for each in listed}
     assert list(found) == [*(port.own for port in built[name].ports.values()), "time"]
@@ -41,8 +42,8 @@ def test_its_variables_are_those_of_fmi_2_and_the_time(built, built3, name):
     assert (root.find("ModelExchange") is not None) == (name in MEMORYLESS)
 
 
-def test_outputs_depend_on_what_they_are_declared_to(built3):
-    root = ElementTree.parse(built3["WeftInsertion"].directory / "modelDescription.xml").getroot()
+def test_outputs_depend_on_what_they_are_declared_to(package):
+    root = ElementTree.parse(package("WeftInsertion", 3).directory / "modelDescription.xml").getroot()
     names = [each.get("name") for each in root.find("ModelVariables")]
     depends = {
         names[int(each.get("valueReference")) - 1]: {

@@ -11,8 +11,7 @@ from loomfmu.cli import main
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.scenes import scene
 from loomfmu.declaring.variables import Component
-from loomfmu.fmi.description.model_description import model_description
-from loomfmu.fmi.description.model_description3 import model_description3
+from loomfmu.fmi.description.model_description import model_description, model_description3
 from loomfmu.own import declared, load
 
 GOOD = '''"""A bell."""

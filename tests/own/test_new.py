@@ -100,14 +100,22 @@ def in_a_process(*arguments: str, cwd: Path) -> str:
 
 @pytest.mark.few(1)
 @pytest.mark.parametrize(("name", "own"), [("PickingCam", "picking_cam"), ("LiftABC2", "lift_abc2")])
-def test_the_folder_runs_and_its_tests_pass_as_it_is_written(tmp_path: Path, name: str, own: str) -> None:
+def test_the_folder_runs_and_its_tests_pass_as_it_is_written(
+    tmp_path: Path,
+    name: str,
+    own: str,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     assert main(["new", name, "--output", str(tmp_path / "made here")]) == 0
     folder = tmp_path / "made here" / own
     files = ["README.md", f"{own}.py", f"{own}.toml", f"test_{own}.py"]
     assert sorted(file.name for file in folder.iterdir()) == files
     assert not any("ccentric" in file.read_text() for file in folder.iterdir())
-    assert "holds" in in_a_process("-m", "loomfmu.cli", "run", f"{own}.toml", cwd=folder)
-    in_a_process("-m", "loomfmu.cli", "run", f"{own}.toml", "--native", cwd=folder)
+    monkeypatch.chdir(folder)
+    for options in ((), ("--native",)):
+        assert main(["run", f"{own}.toml", *options]) == 0
+        assert "holds" in capsys.readouterr().out
     in_a_process("-m", "pytest", "-q", "-p", "no:cacheprovider", cwd=folder)
 
 

@@ -9,17 +9,10 @@ from ..display.printed import say, warn
 from ..errors import LoomfmuError
 from ..extras import need
 from ..files import check_target
-from .shared import add_force, add_place, add_scene, add_set, add_vary, ending, pairs
+from .shared import SCENE, SET, argument, command, ending, force, pairs, place, vary
 
 
-def add_sweep(commands: Any) -> None:
-    """Add `sweep` and its arguments."""
-    command = commands.add_parser("sweep", help="run a scene with many combinations of values")
-    command.add_argument("sweep", type=ending(".toml"), metavar="SWEEP.toml")
-    add_place(command, "SWEEP")
-    command.set_defaults(action=sweep)
-
-
+@command(argument("sweep", "SWEEP.toml", type=ending(".toml")), *place("SWEEP"))
 def sweep(options: argparse.Namespace) -> int:
     """Run a scene with many combinations of values."""
     from ..sweeps.run import sweep as run_sweep
@@ -37,47 +30,30 @@ def _places(options: argparse.Namespace) -> dict[str, Any]:
     return {name: getattr(options, name) for name in ("output", "processes", "scheduler", "restart")}
 
 
-def add_limit(commands: Any) -> None:
-    """Add `limit` and its arguments."""
-    command = commands.add_parser(
-        "limit",
-        help="find the values at which claims begin to fail",
-        epilog="Exit status: 0 all claims hold in some range; 1 in none; 2 bad input or a failed FMU.",
-    )
-    add_scene(command)
-    add_vary(
-        command,
+@command(
+    SCENE,
+    vary(
         "what is varied, such as shaft.speed or shaft.speed=300rpm..900rpm; a second one gives the limits of"
         " the first at values of the second",
         required=True,
-    )
-    command.add_argument(
-        "--from",
-        dest="from_",
-        metavar="LOW",
-        help="where the range of the first --vary begins, with its unit",
-    )
-    command.add_argument(
+    ),
+    argument("--from", "LOW", "where the range of the first --vary begins, with its unit", dest="from_"),
+    argument(
         "--to",
-        metavar="HIGH",
-        help="where it ends; by default both are the variable's bounds, or half and twice the scene's value",
-    )
-    command.add_argument(
-        "--points", type=int, metavar="N", help="values of the first that are tried first (41)"
-    )
-    command.add_argument("--rows", type=int, metavar="N", help="values of the second that are taken (11)")
-    add_set(command)
-    command.add_argument(
-        "--output", metavar="FILE.csv|svg|png|pdf", help="also write the limits as a table or a picture"
-    )
-    add_force(command, "the file even if it is not such a table or picture")
-    command.set_defaults(action=limit)
-
-
+        "HIGH",
+        "where it ends; by default both are the variable's bounds, or half and twice the scene's value",
+    ),
+    argument("--points", "N", "values of the first that are tried first (41)", type=int),
+    argument("--rows", "N", "values of the second that are taken (11)", type=int),
+    SET,
+    argument("--output", "FILE.csv|svg|png|pdf", "also write the limits as a table or a picture"),
+    force("the file even if it is not such a table or picture"),
+    statuses="0 all claims hold in some range; 1 in none; 2 bad input or a failed FMU.",
+)
 def limit(options: argparse.Namespace) -> int:
     """Find the values at which claims begin to fail."""
     from ..studies.limits import limit_tables
-    from ..studies.limits.boundary import limit as find
+    from ..studies.limits.limits import limit as find
 
     inputs = [Path(options.scene)]
     output = Path(options.output) if options.output else None
@@ -115,26 +91,19 @@ def _reported(
     return 0 if found else 1
 
 
-def add_tolerances(commands: Any) -> None:
-    """Add `tolerances` and its arguments."""
-    command = commands.add_parser(
-        "tolerances",
-        help="find the worst case of every claim within tolerances",
-        epilog="Exit status: 0 all hold in their worst cases; 1 a claim fails or is undecided;"
-        " 2 bad input or a failed FMU.",
-    )
-    add_scene(command)
-    add_vary(
-        command,
+@command(
+    SCENE,
+    vary(
         "a tolerance, such as belt.guide_clearance=0.2mm..0.5mm (repeatable); those of the scene's"
-        " [tolerances] by default",
-    )
-    add_set(command)
-    command.add_argument("--picture", metavar="FILE.svg|png|pdf", help="also draw the worst cases")
-    add_force(command, "the picture even if loomfmu did not draw it")
-    command.set_defaults(action=tolerances)
-
-
+        " [tolerances] by default"
+    ),
+    SET,
+    argument("--picture", "FILE.svg|png|pdf", "also draw the worst cases"),
+    force("the picture even if loomfmu did not draw it"),
+    statuses=(
+        "0 all hold in their worst cases; 1 a claim fails or is undecided; 2 bad input or a failed FMU."
+    ),
+)
 def tolerances(options: argparse.Namespace) -> int:
     """Find the worst case of every claim within tolerances."""
     from ..report import pictures
@@ -150,40 +119,27 @@ def tolerances(options: argparse.Namespace) -> int:
     return _reported(found, show, drawn)
 
 
-def add_prove(commands: Any) -> None:
-    """Add `prove` and its arguments."""
-    command = commands.add_parser(
-        "prove",
-        help="prove claims for all shaft angles and all values within ranges",
-        epilog="Exit status: 0 all claims are proven, or confirmed; 1 one is refuted, left open or cannot be"
-        " proven; 2 bad input.",
-    )
-    command.add_argument("scene", nargs="?", metavar="SCENE", help="the scene (.toml or .ssp)")
-    command.add_argument(
+@command(
+    argument("scene", "SCENE", "the scene (.toml or .ssp)", nargs="?"),
+    argument(
         "--over",
+        "INSTANCE.VARIABLE=LOW..HIGH",
+        "a parameter and its range, such as shaft.speed=300rpm..640rpm (repeatable)",
         action="append",
         default=[],
-        metavar="INSTANCE.VARIABLE=LOW..HIGH",
-        help="a parameter and its range, such as shaft.speed=300rpm..640rpm (repeatable)",
-    )
-    command.add_argument("--claim", action="append", metavar="NAME", help="only this claim (repeatable)")
-    command.add_argument(
-        "--boxes",
-        type=int,
-        metavar="N",
-        help="boxes that are tried for a claim before it is left open (200000)",
-    )
-    add_set(command)
-    command.add_argument(
-        "--certificate", metavar="FILE.json", help="also write what others need to confirm it"
-    )
-    command.add_argument("--check", metavar="FILE.json", help="confirm a certificate instead of proving")
-    add_force(command, "the certificate even if loomfmu did not write it")
-    command.set_defaults(action=prove)
-
-
+    ),
+    argument("--claim", "NAME", "only this claim (repeatable)", action="append"),
+    argument("--boxes", "N", "boxes that are tried for a claim before it is left open (200000)", type=int),
+    SET,
+    argument("--certificate", "FILE.json", "also write what others need to confirm it"),
+    argument("--check", "FILE.json", "confirm a certificate instead of proving"),
+    force("the certificate even if loomfmu did not write it"),
+    statuses=(
+        "0 all claims are proven, or confirmed; 1 one is refuted, left open or cannot be proven; 2 bad input."
+    ),
+)
 def prove(options: argparse.Namespace) -> int:
-    """Prove claims, or confirm a certificate."""
+    """Prove claims for all shaft angles and all values within ranges."""
     if (options.scene is None) == (options.check is None):
         raise LoomfmuError("prove takes either a SCENE or --check FILE.json")
     if options.check is not None:
@@ -211,21 +167,16 @@ def prove(options: argparse.Namespace) -> int:
     return _reported(found, show, writers)
 
 
-def add_optimize(commands: Any) -> None:
-    """Add `optimize` and its arguments."""
-    command = commands.add_parser(
-        "optimize",
-        help="find the best design within ranges and choices, all claims met",
-        epilog="Exit status: 0 all claims hold in the best design; 1 one is undecided there, or no design"
-        " meets all claims; 2 bad input or a failed FMU.",
-    )
-    command.add_argument("study", type=ending(".toml"), metavar="STUDY.toml")
-    add_place(command, "STUDY")
-    command.set_defaults(action=optimize)
-
-
+@command(
+    argument("study", "STUDY.toml", type=ending(".toml")),
+    *place("STUDY"),
+    statuses=(
+        "0 all claims hold in the best design; 1 one is undecided there, or no design"
+        " meets all claims; 2 bad input or a failed FMU."
+    ),
+)
 def optimize(options: argparse.Namespace) -> int:
-    """Find the best design."""
+    """Find the best design within ranges and choices, all claims met."""
     from ..studies.optimizing.best_design import show
     from ..studies.optimizing.optimize import optimize as find
 
@@ -235,54 +186,43 @@ def optimize(options: argparse.Namespace) -> int:
     return 0 if found.holds else 1
 
 
-def add_fit(commands: Any) -> None:
-    """Add `fit` and its arguments."""
-    command = commands.add_parser(
-        "fit",
-        help="find parameters of a scene from measured curves",
-        epilog="Exit status: 0 the data are explained; 1 a signal is hardly explained, or a parameter ended"
-        " at an end of its range; 2 bad input or a failed FMU.",
-    )
-    add_scene(command)
-    command.add_argument(
+@command(
+    SCENE,
+    argument(
         "data",
-        metavar="DATA.csv|h5",
-        help="columns with units, such as shaft_angle [deg],damper_1.displacement [mm]; or a trace",
-    )
-    add_vary(
-        command,
-        "a parameter to find, such as damper_1.spring_stiffness=1N/mm..20N/mm (repeatable)",
-        required=True,
-    )
-    command.add_argument(
+        "DATA.csv|h5",
+        "columns with units, such as shaft_angle [deg],damper_1.displacement [mm]; or a trace",
+    ),
+    vary("a parameter to find, such as damper_1.spring_stiffness=1N/mm..20N/mm (repeatable)", required=True),
+    argument(
         "--signal",
+        "SIGNAL",
+        "what is fitted of the data (repeatable); all columns of a table by default",
         action="append",
         default=[],
-        metavar="SIGNAL",
-        help="what is fitted of the data (repeatable); all columns of a table by default",
-    )
-    command.add_argument(
+    ),
+    argument(
         "--offset",
-        metavar="LOW..HIGH",
-        help="also find what is added to the times or shaft angles of the data, such as -2ms..2ms",
-    )
-    command.add_argument(
+        "LOW..HIGH",
+        "also find what is added to the times or shaft angles of the data, such as -2ms..2ms",
+    ),
+    argument(
         "--loss",
-        metavar="LOSS",
+        "LOSS",
+        "soft_l1, huber, cauchy or arctan where some values may be far off; linear (least squares)",
         default="linear",
-        help="soft_l1, huber, cauchy or arctan where some values may be far off; linear (least squares)",
-    )
-    add_set(command)
-    command.add_argument("--output", metavar="FILE.toml", help="also write the scene with the fitted values")
-    command.add_argument(
-        "--picture", metavar="FILE.svg|png|pdf", help="also draw measured and computed curves"
-    )
-    add_force(command, "these files even if they are not a scene and a picture")
-    command.set_defaults(action=fit)
-
-
+    ),
+    SET,
+    argument("--output", "FILE.toml", "also write the scene with the fitted values"),
+    argument("--picture", "FILE.svg|png|pdf", "also draw measured and computed curves"),
+    force("these files even if they are not a scene and a picture"),
+    statuses=(
+        "0 the data are explained; 1 a signal is hardly explained, or a parameter ended"
+        " at an end of its range; 2 bad input or a failed FMU."
+    ),
+)
 def fit(options: argparse.Namespace) -> int:
-    """Find parameters from measured curves; write the scene and the picture that were asked for."""
+    """Find parameters of a scene from measured curves."""
     from ..cosim.reading import checked
     from ..report import pictures
     from ..studies import rewritten

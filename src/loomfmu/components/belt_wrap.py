@@ -1,12 +1,13 @@
 """BeltWrap: what holds the rapier belt on its wheel."""
 
 from dataclasses import dataclass
-from math import inf
+from math import inf, pi
 from typing import ClassVar
 
 from ..declaring.declarations import input_, output, parameter
 from ..declaring.variables import NOTHING, PUBLISHED, Component
 from ..physics.belt_wrap import bending_moment, bending_strain, lever_arm, restraint_load
+from .quantities import BENDING_STIFFNESS, LENGTH, THICKNESS, TURN, WHEEL_DIAMETER
 from .shared_declarations import found_once
 
 
@@ -18,40 +19,17 @@ class BeltWrap(Component):
     origin: ClassVar[str] = PUBLISHED
     longest_turn: ClassVar[float] = inf
 
-    bending_stiffness: float = parameter(
-        "N.m2", 0.25, "Bending stiffness EI of the belt", minimum=1e-9, maximum=1e6
-    )
-    wheel_diameter: float = parameter(
-        "m", 0.397, "Bottom diameter of the rapier wheel", display="mm", minimum=1e-3, maximum=10.0
-    )
+    bending_stiffness: float = parameter(BENDING_STIFFNESS, 0.25, "Bending stiffness EI of the belt")
+    wheel_diameter: float = parameter(WHEEL_DIAMETER, 0.397, "Bottom diameter of the rapier wheel")
     thickness: float = parameter(
-        "m",
-        1.35e-3,
-        "Thickness of the belt, for its strain (published: 30 mm x 1.35 mm)",
-        display="mm",
-        minimum=1e-6,
-        maximum=0.1,
-        nominal=1e-3,
+        THICKNESS, 1.35e-3, "Thickness of the belt, for its strain (published: 30 mm x 1.35 mm)"
     )
-    wrap_angle: float = parameter(
-        "rad",
-        3.141592653589793,
-        "Angle of the belt on the wheel, for information only: no effect",
-        display="deg",
-        minimum=0.0,
-        maximum=6.283185307179586,
-    )
+    wrap_angle: float = parameter(TURN, pi, "Angle of the belt on the wheel, for information only: no effect")
     block_clearance: float = input_(
-        "m",
-        0.3e-3,
-        "Clearance between block and belt; grows with wear",
-        display="mm",
-        minimum=1e-6,
-        maximum=0.01,
-        nominal=1e-3,
+        LENGTH.within(1e-6, 0.01, nominal=1e-3), 0.3e-3, "Clearance between block and belt; grows with wear"
     )
     lever_arm: float = output(
-        "m", "Lever arm of the restraint load", display="mm", nominal=0.01, follows="block_clearance"
+        LENGTH, "Lever arm of the restraint load", nominal=0.01, follows="block_clearance"
     )
     restraint_load: float = output(
         "N", "Load of each block on the belt", nominal=10.0, follows="block_clearance"

@@ -16,10 +16,12 @@ from ..physics.detaching_roller import (
     top_roller_torque,
 )
 from ..physics.shaft import too_far
+from .quantities import FORCE, INERTIA, RADIUS, RATIO, SHARE, TURNING
 from .shaft_driven import TOO_FAR, ShaftDriven
+from .shared_declarations import OF_SHAFT
 
-_OF_MOTION = ("shaft_angle", "shaft_velocity", "shaft_acceleration", "acceleration")
-_OF_VELOCITY = ("shaft_angle", "shaft_velocity", "shaft_acceleration", "roller_ratio")
+_OF_MOTION = (*OF_SHAFT, "acceleration")
+_OF_VELOCITY = (*OF_SHAFT, "roller_ratio")
 
 
 @dataclass(slots=True)
@@ -46,29 +48,18 @@ class DetachingRoller(ShaftDriven):
     use_table: bool = parameter(
         "1", True, "Use the built-in motion (assumed) instead of acceleration and fibre_share"
     )
-    roller_radius: float = parameter(
-        "m", 0.0125, "Radius of a detaching roller", display="mm", minimum=1e-4, maximum=1.0, nominal=0.01
-    )
-    top_radius: float = parameter(
-        "m", 0.01225, "Radius of a top roller", display="mm", minimum=1e-4, maximum=1.0, nominal=0.01
-    )
+    roller_radius: float = parameter(RADIUS, 0.0125, "Radius of a detaching roller")
+    top_radius: float = parameter(RADIUS, 0.01225, "Radius of a top roller")
     roller_inertia: float = parameter(
-        "kg.m2",
-        135.64e-6,
-        "Inertia of a detaching roller, for one unit",
-        minimum=0.0,
-        maximum=1.0,
-        nominal=1e-4,
+        INERTIA.within(0.0, 1.0, nominal=1e-4), 135.64e-6, "Inertia of a detaching roller, for one unit"
     )
     top_inertia: float = parameter(
-        "kg.m2", 33.98e-6, "Inertia of a top roller", minimum=0.0, maximum=1.0, nominal=1e-5
+        INERTIA.within(0.0, 1.0, nominal=1e-5), 33.98e-6, "Inertia of a top roller"
     )
     nip_load: float = parameter(
-        "N", 300.0, "Load of a top roller on its detaching roller", minimum=0.0, maximum=1e5, nominal=100.0
+        FORCE.within(0.0, 1e5, nominal=100.0), 300.0, "Load of a top roller on its detaching roller"
     )
-    friction: float = parameter(
-        "1", 0.33, "Static friction between fibres and roller", minimum=0.0, maximum=2.0
-    )
+    friction: float = parameter(RATIO.within(0.0, 2.0), 0.33, "Static friction between fibres and roller")
     units: int = parameter("1", 8, "Number of units side by side in the machine", minimum=1, maximum=1000)
     acceleration: float = input_(
         "rad/s2",
@@ -79,36 +70,22 @@ class DetachingRoller(ShaftDriven):
         nominal=10000.0,
     )
     fibre_share: float = input_(
-        "1",
-        1.0,
-        "Fibres in the nip as a share of the maximum, used if use_table is false",
-        minimum=0.0,
-        maximum=1.0,
+        SHARE, 1.0, "Fibres in the nip as a share of the maximum, used if use_table is false"
     )
     roller_ratio: float = input_(
-        "1",
+        RATIO.within(-1e6, 1e6),
         0.5,
         "Velocity of the rollers relative to the shaft's, used if use_table is false",
-        minimum=-1e6,
-        maximum=1e6,
     )
     prescribe_drafting_force: bool = parameter(
         "1", False, "Use largest_drafting_force; otherwise half of what the nip holds, by (16)"
     )
     largest_drafting_force: float = parameter(
-        "N",
+        FORCE.within(0.0, 1e5, nominal=10.0),
         45.0,
         "Drafting force with the most fibres, used if prescribe_drafting_force is true (assumed)",
-        minimum=0.0,
-        maximum=1e5,
-        nominal=10.0,
     )
-    division: float = output(
-        "1",
-        "Division of the nip, 0 to 40",
-        nominal=10.0,
-        depends=("shaft_angle", "shaft_velocity", "shaft_acceleration"),
-    )
+    division: float = output("1", "Division of the nip, 0 to 40", nominal=10.0, depends=OF_SHAFT)
     roller_acceleration: float = output(
         "rad/s2", "Acceleration of the rollers in use", nominal=10000.0, depends=_OF_MOTION
     )
@@ -129,9 +106,7 @@ class DetachingRoller(ShaftDriven):
     )
     unit_torque: float = output("N.m", "Driving torque of both rollers of a unit, M")
     machine_torque: float = output("N.m", "Driving torque of all units, M0", nominal=10.0)
-    roller_velocity: float = output(
-        "rad/s", "Velocity of the rollers in use", display="rev/min", nominal=50.0, depends=_OF_VELOCITY
-    )
+    roller_velocity: float = output(TURNING, "Velocity of the rollers in use", depends=_OF_VELOCITY)
     shaft_torque: float = output(
         "N.m",
         "Torque of all units on the shaft, braking: machine_torque by the rollers' relative velocity",

@@ -9,6 +9,7 @@ from ..declaring.declarations import at_step_end, input_, output, parameter, sta
 from ..declaring.variables import Component, Terminal
 from ..physics.driven_shaft import bulge_for, driven_motion, summed, work_of
 from ..physics.shaft_friction import opposed_motion, sense_of, stopping_share
+from .quantities import ANGLE, FRICTION, INERTIA, LOAD_TORQUE, LOAD_WORK, TORQUE, TURNING
 from .shared_declarations import shaft_speed, shaft_start
 from .terminals import SHAFT
 
@@ -30,35 +31,24 @@ class DrivenShaft(Component):
 
     speed: float = shaft_speed("No-load speed of the motor, referred to the shaft")
     torque_slope: float = parameter(
-        "N.m.s/rad",
+        FRICTION.within(0.0, 1e9, nominal=10.0),
         40.0,
         "Slope of the motor's torque line: torque per rad/s below speed (assumed)",
-        minimum=0.0,
-        maximum=1e9,
-        nominal=10.0,
     )
     inertia: float = parameter(
-        "kg.m2",
+        INERTIA.within(1e-6, 1e6),
         2.0,
         "Inertia of shaft, motor and flywheel, referred to the shaft (assumed)",
-        minimum=1e-6,
-        maximum=1e6,
     )
     dry_friction: float = parameter(
-        "N.m",
+        TORQUE.within(0.0, 1e9, nominal=10.0),
         0.0,
         "Dry friction of the shaft: opposes its motion, and holds it at rest against torques up to this",
-        minimum=0.0,
-        maximum=1e9,
-        nominal=10.0,
     )
     viscous_friction: float = parameter(
-        "N.m.s/rad",
+        FRICTION.within(0.0, 1e9, nominal=1.0),
         0.0,
         "Viscous friction of the shaft: torque that opposes motion, per rad/s",
-        minimum=0.0,
-        maximum=1e9,
-        nominal=1.0,
     )
     start_angle: float = shaft_start("Shaft angle at the start; 0 is the rapiers' outer dead centre")
     start_at_speed: bool = parameter("1", True, "Start at speed; if false, from rest")
@@ -69,24 +59,18 @@ class DrivenShaft(Component):
     )
     torque: tuple[float, ...] = array(
         input_(
-            "N.m",
+            LOAD_TORQUE,
             0.0,
             f"Load torque of mechanism {number}; positive acts backwards",
-            nominal=10.0,
-            minimum=-1e12,
-            maximum=1e12,
             source="*.shaft_torque",
         )
         for number in range(1, LOADS + 1)
     )
     work: tuple[float, ...] = array(
         input_(
-            "J",
+            LOAD_WORK,
             0.0,
             f"Work that mechanism {number} has taken from the shaft, at the end of the step",
-            nominal=10.0,
-            minimum=-1e15,
-            maximum=1e15,
             source="*.shaft_work",
             when=f"use_work_{number}",
         )
@@ -94,20 +78,15 @@ class DrivenShaft(Component):
     )
     passed_torque: tuple[float, ...] = array(
         input_(
-            "N.m",
+            LOAD_TORQUE,
             0.0,
             f"Part of torque_{number} whose work is not in work_{number}",
-            nominal=10.0,
-            minimum=-1e12,
-            maximum=1e12,
             source="*.passed_torque",
         )
         for number in range(1, LOADS + 1)
     )
-    angle: float = output(
-        "rad", "Shaft angle, not wrapped", display="deg", unbounded=True, nominal=6.0, rate="velocity"
-    )
-    velocity: float = output("rad/s", "Shaft velocity", display="rev/min", nominal=50.0, rate="acceleration")
+    angle: float = output(ANGLE, "Shaft angle, not wrapped", unbounded=True, nominal=6.0, rate="velocity")
+    velocity: float = output(TURNING, "Shaft velocity", rate="acceleration")
     acceleration: float = output("rad/s2", "Shaft acceleration", nominal=100.0)
     motor_torque: float = output("N.m", "Motor torque on the shaft", nominal=10.0)
     load_torque: float = output("N.m", "Load torque of all mechanisms, braking", nominal=10.0)

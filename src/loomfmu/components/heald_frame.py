@@ -9,6 +9,19 @@ from ..declaring.declarations import at_step_end, indicator, input_, output, par
 from ..declaring.variables import MIXED, NOTHING, Component, Problem, Terminal
 from ..physics.heald import crank_slope, lift_fraction, peg, slow_points_passed
 from ..physics.shaft import carried, too_far
+from .quantities import (
+    FRAME_MASS,
+    FREQUENCY,
+    GRAVITY,
+    LENGTH,
+    LOAD,
+    LOAD_WORK,
+    RATIO,
+    ROTOR_ANGLE,
+    SHARE,
+    STROKE,
+    TURNING,
+)
 from .shaft_driven import turned_too_far
 from .terminals import FRAME, OF_ROTOR, ROTOR
 
@@ -36,36 +49,20 @@ class HealdFrame(Component):
         FRAME.of("lift", "velocity", "acceleration"),
     )
 
-    stroke: float = parameter(
-        "m", 0.098, "Stroke of the frame", display="mm", minimum=0.0, maximum=1.0, nominal=0.1
-    )
-    frame_mass: float = parameter(
-        "kg", 15.0, "Mass of the frame with all that it holds", minimum=0.0, maximum=1e3, nominal=10.0
-    )
+    stroke: float = parameter(STROKE, 0.098, "Stroke of the frame")
+    frame_mass: float = parameter(FRAME_MASS, 15.0, "Mass of the frame with all that it holds")
     sprung_mass: float = parameter(
-        "kg",
+        FRAME_MASS,
         0.0,
         "Part of frame_mass that hangs on springs in the frame, such as the carrier of a damper",
-        minimum=0.0,
-        maximum=1e3,
-        nominal=10.0,
         source="damper_#.carrier_mass",
         source_for="load",
     )
-    gravity: float = parameter(
-        "m/s2",
-        9.80665,
-        "Gravity on the frame; 0 if springs carry its weight",
-        minimum=0.0,
-        maximum=100.0,
-        nominal=10.0,
-    )
+    gravity: float = parameter(GRAVITY, 9.80665, "Gravity on the frame; 0 if springs carry its weight")
     warp_ratio: float = parameter(
-        "1",
+        SHARE,
         0.16666666666666666,
         "Warp height at the rapier as a share of the lift (assumed: that of an air-jet loom)",
-        minimum=0.0,
-        maximum=1.0,
     )
     pattern_length: int = parameter("1", 2, "Picks after which the pattern repeats", minimum=1, maximum=128)
     pattern: tuple[int, ...] = array(
@@ -86,47 +83,31 @@ class HealdFrame(Component):
         "1", False, "Count load_work in shaft_work; otherwise passed_torque goes to load"
     )
     rotor_angle: float = input_(
-        "rad",
-        3.141592653589793,
+        ROTOR_ANGLE,
+        pi,
         "Rotor angle from the slow point of pick 0, not wrapped",
-        display="deg",
         unbounded=True,
-        nominal=6.0,
         rate="rotor_velocity",
-        minimum=-1e9,
-        maximum=1e9,
     )
     rotor_velocity: float = input_(
-        "rad/s",
-        41.88790204786391,
-        "Rotor velocity",
-        display="rev/min",
-        nominal=50.0,
-        rate="rotor_acceleration",
-        minimum=-1e9,
-        maximum=1e9,
+        TURNING.within(-1e9, 1e9), 41.88790204786391, "Rotor velocity", rate="rotor_acceleration"
     )
     rotor_acceleration: float = input_(
         "rad/s2", 0.0, "Rotor acceleration", nominal=1000.0, minimum=-1e15, maximum=1e15
     )
     lift_fraction: float = input_(
-        "1",
+        RATIO.within(-1e3, 1e3),
         0.5,
         "Lift of a frame that changes at every pick, used if follow_lift is true",
         rate="lift_rate",
         when="follow_lift",
-        minimum=-1e3,
-        maximum=1e3,
     )
     lift_rate: float = input_(
-        "1/s",
+        FREQUENCY.within(-1e9, 1e9, nominal=10.0),
         10.471975511965976,
         "Rate of lift_fraction",
-        nominal=10.0,
         rate="lift_acceleration",
         when="follow_lift",
-        minimum=-1e9,
-        maximum=1e9,
     )
     lift_acceleration: float = input_(
         "1/s2",
@@ -138,59 +119,40 @@ class HealdFrame(Component):
         maximum=1e15,
     )
     rotor_ratio: float = input_(
-        "1",
+        RATIO.within(-1e3, 1e3),
         1.0,
         "Rotor velocity relative to the shaft's, for shaft_torque",
-        minimum=-1e3,
-        maximum=1e3,
         source="dobby.rotor_ratio",
     )
     # not `when` follow_lift: a wire to it alone must not switch that on
     lift_slope: float = input_(
-        "1",
+        RATIO.within(-1e6, 1e6),
         0.25,
         "Slope of lift_fraction by the shaft angle, for the torques if follow_lift is true",
-        minimum=-1e6,
-        maximum=1e6,
         source="dobby.lift_slope",
     )
     load: float = input_(
-        "N",
+        LOAD,
         0.0,
         "Force on the frame of what hangs in it, such as carrier or warp; positive upwards",
-        nominal=100.0,
-        minimum=-1e12,
-        maximum=1e12,
         source="damper_#.transmitted_force|warp_#.frame_load",
         source_for="shaft_torque",
     )
     load_work: float = input_(
-        "J",
+        LOAD_WORK,
         0.0,
         "Work of the frame so far on what exerts load, at the end of the step",
-        nominal=10.0,
-        minimum=-1e15,
-        maximum=1e15,
         when="use_load_work",
         source="damper_#.frame_work|warp_#.frame_work",
         source_for="load",
     )
     lift: float = output(
-        "m",
-        "Lift of the frame above its lowered position",
-        display="mm",
-        nominal=0.1,
-        rate="velocity",
-        depends=OF_ROTOR,
+        LENGTH, "Lift of the frame above its lowered position", nominal=0.1, rate="velocity", depends=OF_ROTOR
     )
     velocity: float = output("m/s", "Velocity of the frame", rate="acceleration", depends=OF_ROTOR)
     acceleration: float = output("m/s2", "Acceleration of the frame", nominal=10.0, depends=OF_ROTOR)
     warp_height: float = output(
-        "m",
-        "Height of the warp above the closed shed, at the rapier",
-        display="mm",
-        nominal=0.01,
-        depends=OF_ROTOR,
+        LENGTH, "Height of the warp above the closed shed, at the rapier", nominal=0.01, depends=OF_ROTOR
     )
     inertia_force: float = output(
         "N", "Inertia force of the frame without its sprung mass", nominal=100.0, depends=OF_ROTOR

@@ -8,6 +8,7 @@ from ..declaring.declarations import at_step_end, input_, output, parameter, sta
 from ..declaring.variables import Component, Problem, Terminal
 from ..physics.heald_play import distance, until_bar, until_free
 from ..physics.numerics.motion import joined, moved_on
+from .quantities import GRAVITY, LENGTH, LOAD, MASS, RATIO, VELOCITY
 from .shared_declarations import frame_acceleration, frame_lift, frame_velocity
 from .terminals import FRAME
 
@@ -35,29 +36,22 @@ class HealdPlay(Component):
     bounces: ClassVar[str] = "blows"
 
     play: float = parameter(
-        "m",
+        LENGTH.within(1e-9, 1.0, nominal=0.001),
         0.002,
         "Play of the heald's loops on the bars, from end to end (assumed: none published)",
-        display="mm",
-        minimum=1e-9,
-        maximum=1.0,
-        nominal=0.001,
     )
     heald_mass: float = parameter(
-        "kg", 0.003, "Mass of a heald (assumed: none published)", minimum=1e-6, maximum=10.0, nominal=0.01
+        MASS.within(1e-6, 10.0, nominal=0.01), 0.003, "Mass of a heald (assumed: none published)"
     )
     restitution: float = parameter(
-        "1", 0.5, "Coefficient of restitution of a blow (assumed)", minimum=0.0, maximum=0.99
+        RATIO.within(0.0, 0.99), 0.5, "Coefficient of restitution of a blow (assumed)"
     )
     least_speed: float = parameter(
-        "m/s",
+        VELOCITY.within(1e-9, 100.0, nominal=0.001),
         0.001,
         "Speed below which a heald stays on the bar and no blow is counted (assumed)",
-        minimum=1e-9,
-        maximum=100.0,
-        nominal=0.001,
     )
-    gravity: float = parameter("m/s2", 9.80665, "Gravity", minimum=0.0, maximum=100.0, nominal=10.0)
+    gravity: float = parameter(GRAVITY, 9.80665, "Gravity")
     thread_count: int = parameter(
         "1",
         1260,
@@ -71,19 +65,11 @@ class HealdPlay(Component):
     velocity: float = frame_velocity("the bars")
     acceleration: float = frame_acceleration(-20.0, "the bars")
     warp_load: float = input_(
-        "N",
-        0.0,
-        "Load of all threads on their healds, positive upwards",
-        nominal=100.0,
-        minimum=-1e12,
-        maximum=1e12,
-        source="warp_#.frame_load",
+        LOAD, 0.0, "Load of all threads on their healds, positive upwards", source="warp_#.frame_load"
     )
-    displacement: float = output(
-        "m", "Displacement of the heald in its play", display="mm", nominal=0.001, rate="rate"
-    )
+    displacement: float = output(LENGTH, "Displacement of the heald in its play", nominal=0.001, rate="rate")
     rate: float = output("m/s", "Rate of the displacement")
-    travel: float = output("m", "Way of the heald in its play so far", display="mm", nominal=0.1, so_far=True)
+    travel: float = output(LENGTH, "Way of the heald in its play so far", nominal=0.1, so_far=True)
     blows: int = output("1", "Blows of the heald on the bars so far", start=0, so_far=True)
     blow_velocity: float = output("m/s", "Velocity of the last blow", variability="discrete", nominal=0.1)
     hardest_blow: float = output(

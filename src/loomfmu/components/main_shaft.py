@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 from ..declaring.declarations import output, parameter
 from ..declaring.variables import NOTHING, Component, Terminal
 from ..physics.shaft import shaft_motion
+from .quantities import ANGLE, RATIO, TURNING
 from .shared_declarations import shaft_speed, shaft_start
 from .terminals import SHAFT
 
@@ -29,13 +30,11 @@ class MainShaft(Component):
         "s", 0.0, "Duration of the start-up from rest at time 0; 0 for no start-up", minimum=0.0, maximum=1e4
     )
     ripple_amplitude: float = parameter(
-        "1", 0.0, "Amplitude of the speed ripple, as a share of speed", minimum=0.0, maximum=0.95
+        RATIO.within(0.0, 0.95), 0.0, "Amplitude of the speed ripple, as a share of speed"
     )
     ripple_order: int = parameter("1", 2, "Ripples per revolution", minimum=1, maximum=100)
-    angle: float = output(
-        "rad", "Shaft angle, not wrapped", display="deg", unbounded=True, nominal=6.0, rate="velocity"
-    )
-    velocity: float = output("rad/s", "Shaft velocity", display="rev/min", nominal=50.0, rate="acceleration")
+    angle: float = output(ANGLE, "Shaft angle, not wrapped", unbounded=True, nominal=6.0, rate="velocity")
+    velocity: float = output(TURNING, "Shaft velocity", rate="acceleration")
     acceleration: float = output("rad/s2", "Shaft acceleration", nominal=100.0)
 
     @classmethod

@@ -18,8 +18,24 @@ from ..physics.pattern_lock import (
     torque_speed_limit,
 )
 from ..physics.shaft import too_far
+from .quantities import (
+    ANGLE,
+    DISTANCE,
+    DURATION,
+    EITHER_WAY,
+    FORCE,
+    HEAD_MASS,
+    LENGTH,
+    LEVER,
+    LINK_LENGTH,
+    RATIO,
+    SHARE,
+    STIFFNESS,
+    TURN,
+    TURNING,
+)
 from .shaft_driven import TOO_FAR, ShaftDriven
-from .shared_declarations import found_once, link_length
+from .shared_declarations import OF_SHAFT, found_once
 
 
 @dataclass(slots=True)
@@ -35,68 +51,36 @@ class PatternLock(ShaftDriven):
     longest_turn: ClassVar[float] = inf
     problems: ClassVar[tuple[Problem, ...]] = (TOO_FAR,)
 
-    pawl_mass: float = parameter(
-        "kg", 0.170, "Mass of the pawl", display="g", minimum=1e-6, maximum=100.0, nominal=0.1
-    )
-    pawl_length: float = parameter(
-        "m", 0.160, "Length of the pawl", display="mm", minimum=1e-3, maximum=10.0, nominal=0.1
-    )
-    pawl_width: float = parameter(
-        "m", 0.030, "Width of the pawl", display="mm", minimum=1e-4, maximum=10.0, nominal=0.01
-    )
-    rest_share: float = parameter(
-        "1", 0.15, "Share of the pawl's width that stays outside the slot", minimum=0.0, maximum=1.0
-    )
+    pawl_mass: float = parameter(HEAD_MASS, 0.170, "Mass of the pawl")
+    pawl_length: float = parameter(LEVER, 0.160, "Length of the pawl")
+    pawl_width: float = parameter(LENGTH.within(1e-4, 10.0, nominal=0.01), 0.030, "Width of the pawl")
+    rest_share: float = parameter(SHARE, 0.15, "Share of the pawl's width that stays outside the slot")
     engagement_start: float = parameter(
-        "rad",
-        2.4870941840919194,
-        "Shaft angle at which the engagement begins (assumed)",
-        display="deg",
-        minimum=-6.283185307179586,
-        maximum=6.283185307179586,
+        EITHER_WAY, 2.4870941840919194, "Shaft angle at which the engagement begins (assumed)"
     )
     engagement_angle: float = parameter(
-        "rad",
-        1.3089969389957472,
-        "Shaft angle that the engagement takes",
-        display="deg",
-        minimum=1e-3,
-        maximum=6.283185307179586,
+        ANGLE.within(1e-3, 2.0 * pi), 1.3089969389957472, "Shaft angle that the engagement takes"
     )
     spring_force: float = parameter(
-        "N",
+        FORCE.within(1e-6, 1e6, nominal=10.0),
         20.0,
         "Preload of the spring at the end of the turn; force of the pawl on its disc",
-        minimum=1e-6,
-        maximum=1e6,
-        nominal=10.0,
     )
     spring_stiffness: float = parameter(
-        "N/m", 2500.0, "Stiffness of the spring", display="N/mm", minimum=1e-3, maximum=1e9, nominal=1e3
+        STIFFNESS.within(1e-3, 1e9, nominal=1e3), 2500.0, "Stiffness of the spring"
     )
-    lever_arm: float = link_length(0.050, "Lever arm of the spring")
+    lever_arm: float = parameter(LINK_LENGTH, 0.050, "Lever arm of the spring")
     available_angle: float = parameter(
-        "rad",
-        1.5707963267948966,
-        "Shaft angle of the rotor's dwell, in which the pawl must change over",
-        display="deg",
-        minimum=0.0,
-        maximum=6.283185307179586,
+        TURN, 0.5 * pi, "Shaft angle of the rotor's dwell, in which the pawl must change over"
     )
     frame_count: int = parameter("1", 20, "Frames of the dobby, one pawl each", minimum=0, maximum=1000)
-    friction_coefficient: float = parameter(
-        "1", 0.1, "Friction of a pawl on its disc", minimum=0.0, maximum=10.0
-    )
-    friction_radius: float = parameter(
-        "m", 0.0875, "Radius at which a pawl rubs", display="mm", minimum=0.0, maximum=10.0, nominal=0.1
-    )
+    friction_coefficient: float = parameter(RATIO.within(0.0, 10.0), 0.1, "Friction of a pawl on its disc")
+    friction_radius: float = parameter(DISTANCE, 0.0875, "Radius at which a pawl rubs")
     rotor_ratio: float = parameter(
-        "1", 1.4, "Largest speed of the rotor relative to the shaft's", minimum=0.0, maximum=100.0
+        RATIO.within(0.0, 100.0), 1.4, "Largest speed of the rotor relative to the shaft's"
     )
-    gear_ratio: float = parameter(
-        "1", 3.0, "Speed of the rotor relative to the disc's", minimum=1e-3, maximum=1e3
-    )
-    turn: float = output("rad", "Angle of the pawl", display="deg", nominal=0.1, rate="turn_velocity")
+    gear_ratio: float = parameter(RATIO.within(1e-3, 1e3), 3.0, "Speed of the rotor relative to the disc's")
+    turn: float = output(ANGLE, "Angle of the pawl", nominal=0.1, rate="turn_velocity")
     turn_velocity: float = output("rad/s", "Velocity of the pawl", nominal=10.0, rate="turn_acceleration")
     turn_acceleration: float = output("rad/s2", "Acceleration of the pawl", nominal=1000.0)
     inertia_torque: float = output("N.m", "Torque the spring needs to overcome the pawl's inertia")
@@ -104,36 +88,31 @@ class PatternLock(ShaftDriven):
         "1",
         "Share of the spring's torque left over by the pawl's inertia; above 1 where it slows the pawl down",
     )
-    release_time: float = found_once(
-        "s", "Time the spring takes to throw the pawl over", display="ms", nominal=0.01
-    )
+    release_time: float = found_once(DURATION, "Time the spring takes to throw the pawl over", nominal=0.01)
     available_time: float = output(
-        "s",
+        DURATION,
         "Time available in the dwell at the current speed; 1e6 s for a shaft at rest",
-        display="ms",
         nominal=0.01,
-        depends=("shaft_velocity", "shaft_acceleration"),
+        depends=OF_SHAFT[1:],
     )
     in_time: bool = output(
         "1",
         "At this speed the pawl changes over in time and its spring is strong enough",
         start=False,
-        depends=("shaft_velocity", "shaft_acceleration"),
+        depends=OF_SHAFT[1:],
     )
     torque_speed_limit: float = found_once(
-        "rad/s", "Shaft speed up to which the spring is strong enough", display="rev/min", nominal=100.0
+        TURNING, "Shaft speed up to which the spring is strong enough", nominal=100.0
     )
     release_speed_limit: float = found_once(
-        "rad/s", "Shaft speed up to which the pawl changes over in time", display="rev/min", nominal=100.0
+        TURNING, "Shaft speed up to which the pawl changes over in time", nominal=100.0
     )
-    speed_limit: float = found_once(
-        "rad/s", "The lower of the two speed limits", display="rev/min", nominal=100.0
-    )
+    speed_limit: float = found_once(TURNING, "The lower of the two speed limits", nominal=100.0)
     friction_power: float = output(
         "W",
         "Power lost by all pawls on the discs, at the rotor's highest speed",
         nominal=100.0,
-        depends=("shaft_velocity", "shaft_acceleration"),
+        depends=OF_SHAFT[1:],
     )
     inertia: float = auxiliary("kg.m2", "Moment of inertia of the pawl", minimum=0.0)
     whole_turn: float = auxiliary("rad", "Angle that the pawl turns from one disc to the other")

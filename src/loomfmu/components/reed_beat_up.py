@@ -18,8 +18,9 @@ from ..physics.reed import (
     transmission_angle,
 )
 from ..physics.shaft import too_far
+from .quantities import ANGLE, INERTIA, LENGTH, LINK_LENGTH, LINK_PLACE, MASS, PHASE, RATIO, TURNING
 from .shaft_driven import TOO_FAR, ShaftDriven
-from .shared_declarations import found_once, link_length, link_place
+from .shared_declarations import found_once
 
 
 @dataclass(slots=True)
@@ -49,92 +50,72 @@ class ReedBeatUp(ShaftDriven):
         TOO_FAR,
     )
 
-    crank_length: float = link_length(0.065168, "Length of the crank")
-    coupler_length: float = link_length(0.146334, "Length of the coupler between crank and rocker")
-    rocker_length: float = link_length(0.550, "Length of the rocker from its pivot to the coupler")
-    crank_x: float = link_place(
-        -0.207977, "Position of the crank's centre from the rocker's pivot, towards the fell (identified)"
+    crank_length: float = parameter(LINK_LENGTH, 0.065168, "Length of the crank")
+    coupler_length: float = parameter(LINK_LENGTH, 0.146334, "Length of the coupler between crank and rocker")
+    rocker_length: float = parameter(LINK_LENGTH, 0.550, "Length of the rocker from its pivot to the coupler")
+    crank_x: float = parameter(
+        LINK_PLACE,
+        -0.207977,
+        "Position of the crank's centre from the rocker's pivot, towards the fell (identified)",
     )
-    crank_y: float = link_place(
-        0.525749, "Position of the crank's centre from the rocker's pivot, upwards (identified)"
+    crank_y: float = parameter(
+        LINK_PLACE, 0.525749, "Position of the crank's centre from the rocker's pivot, upwards (identified)"
     )
     assembly: int = parameter("1", -1, "Assembly mode of the four-bar: 1 or -1", minimum=-1, maximum=1)
     crank_direction: int = parameter(
         "1", 1, "Direction in which the crank turns: 1 from x to y, or -1 (assumed)", minimum=-1, maximum=1
     )
-    arm_length: float = link_length(
-        0.67984, "Length of the rocker's arm from its pivot to the reed's rod (identified)"
+    arm_length: float = parameter(
+        LINK_LENGTH, 0.67984, "Length of the rocker's arm from its pivot to the reed's rod (identified)"
     )
-    arm_angle: float = parameter(
-        "rad", 0.0, "Angle from the rocker to its arm", display="deg", minimum=-7.0, maximum=7.0
+    arm_angle: float = parameter(PHASE, 0.0, "Angle from the rocker to its arm")
+    rod_length: float = parameter(LINK_LENGTH, 0.48748, "Length of the rod that drives the reed (identified)")
+    reed_height: float = parameter(
+        LINK_PLACE, 0.66933, "Height of the reed's line above the rocker's pivot (identified)"
     )
-    rod_length: float = link_length(0.48748, "Length of the rod that drives the reed (identified)")
-    reed_height: float = link_place(
-        0.66933, "Height of the reed's line above the rocker's pivot (identified)"
-    )
-    beat_up_angle: float = parameter(
-        "rad",
-        0.0,
-        "Shaft angle of the beat-up, the reed's front dead centre",
-        display="deg",
-        minimum=-7.0,
-        maximum=7.0,
-    )
+    beat_up_angle: float = parameter(PHASE, 0.0, "Shaft angle of the beat-up, the reed's front dead centre")
     servo: bool = parameter(
         "1", False, "A servo turns the crank in part of the revolution; otherwise the shaft turns it evenly"
     )
     run_angle: float = parameter(
-        "rad",
-        3.141592653589793,
+        ANGLE.within(0.01, 2.0 * pi),
+        pi,
         "Shaft angle of the servo's run, with the beat-up in its middle (assumed)",
-        display="deg",
-        minimum=0.01,
-        maximum=6.283185307179586,
     )
     ramp_share: float = parameter(
-        "1",
+        RATIO.within(0.001, 0.5),
         0.25,
         "Share of the run in which the servo speeds up, and in which it slows down (assumed)",
-        minimum=0.001,
-        maximum=0.5,
     )
     reed_mass: float = parameter(
-        "kg",
+        MASS.within(0.0, 1e4),
         1.0,
         "Mass that moves with the reed (none published: the torque is per kilogram)",
-        minimum=0.0,
-        maximum=1e4,
     )
     rocker_inertia: float = parameter(
-        "kg.m2", 0.0, "Inertia of the rocker about its pivot (none published)", minimum=0.0, maximum=1e4
+        INERTIA.within(0.0, 1e4), 0.0, "Inertia of the rocker about its pivot (none published)"
     )
     position: float = output(
-        "m",
-        "Reed coordinate from the rocker's pivot, towards the fell",
-        display="mm",
-        nominal=0.1,
-        rate="velocity",
+        LENGTH, "Reed coordinate from the rocker's pivot, towards the fell", nominal=0.1, rate="velocity"
     )
     velocity: float = output("m/s", "Velocity of the reed", rate="acceleration")
     acceleration: float = output("m/s2", "Acceleration of the reed", nominal=100.0)
     transmission_angle: float = output(
-        "rad", "Transmission angle of the crank-rocker; 90 deg is best", display="deg", nominal=1.5
+        ANGLE, "Transmission angle of the crank-rocker; 90 deg is best", nominal=1.5
     )
     smallest_transmission_angle: float = found_once(
-        "rad", "Smallest transmission angle in a revolution", display="deg", nominal=1.5
+        ANGLE, "Smallest transmission angle in a revolution", nominal=1.5
     )
     pressure_angle: float = output(
-        "rad", "Pressure angle of the reed's rod: its slope against the reed's line", display="deg"
+        ANGLE, "Pressure angle of the reed's rod: its slope against the reed's line"
     )
-    front_limit: float = found_once("m", "Reed coordinate at the beat-up", display="mm", nominal=0.1)
-    back_limit: float = found_once("m", "Reed coordinate at the back dead centre", display="mm", nominal=0.1)
-    stroke: float = found_once("m", "Travel of the reed between its limits", display="mm", nominal=0.1)
+    front_limit: float = found_once(LENGTH, "Reed coordinate at the beat-up", nominal=0.1)
+    back_limit: float = found_once(LENGTH, "Reed coordinate at the back dead centre", nominal=0.1)
+    stroke: float = found_once(LENGTH, "Travel of the reed between its limits", nominal=0.1)
     shaft_torque: float = output(
         "N.m", "Torque the shaft needs to drive the moving masses; 0 with a servo", nominal=10.0
     )
-    crank_velocity: float = output(
-        "rad/s", "Velocity of the crank in its direction", display="rev/min", nominal=50.0
-    )
+    crank_velocity: float = output(TURNING, "Velocity of the crank in its direction")
     crank_torque: float = output(
         "N.m", "Torque the crank needs in its direction, from the shaft or the servo", nominal=10.0
     )

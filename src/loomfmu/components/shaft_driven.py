@@ -6,6 +6,7 @@ from typing import ClassVar
 from ..declaring.declarations import at_step_end, input_, parameter
 from ..declaring.variables import Component, Problem, Terminal
 from ..physics.shaft import carried
+from .quantities import ROTOR_ANGLE, TURNING
 from .shared_declarations import shaft_speed, shaft_start
 from .terminals import SHAFT
 
@@ -38,27 +39,19 @@ class ShaftDriven(Component):
     )
     inputs_at_step_end: bool = at_step_end()
     shaft_angle: float = input_(
-        "rad",
+        ROTOR_ANGLE,
         0.0,
         "Shaft angle, not wrapped",
-        display="deg",
         unbounded=True,
-        nominal=6.0,
         rate="shaft_velocity",
         when="follow_shaft",
-        minimum=-1e9,
-        maximum=1e9,
     )
     shaft_velocity: float = input_(
-        "rad/s",
+        TURNING.within(-1e6, 1e6),
         41.88790204786391,
         "Shaft velocity",
-        display="rev/min",
-        nominal=50.0,
         rate="shaft_acceleration",
         when="follow_shaft",
-        minimum=-1e6,
-        maximum=1e6,
     )
     shaft_acceleration: float = input_(
         "rad/s2", 0.0, "Shaft acceleration", nominal=100.0, when="follow_shaft", minimum=-1e15, maximum=1e15

@@ -18,6 +18,7 @@ from ..physics.warp import (
     turns_once,
 )
 from ..physics.warp_energy import thread_energy, thread_power
+from .quantities import LENGTH, TENSION
 from .shared_declarations import frame_acceleration, frame_lift, frame_velocity
 from .terminals import FRAME
 from .threads import Threads
@@ -72,19 +73,15 @@ class WarpTension(Threads):
     lift: float = frame_lift(0.098)
     velocity: float = frame_velocity()
     acceleration: float = frame_acceleration(0.0)
-    extension: float = output("m", "Extension of a thread by the shed", display="mm", nominal=0.01)
-    tension: float = output("N", "Tension of a thread", display="cN", nominal=0.5)
+    extension: float = output(LENGTH, "Extension of a thread by the shed", nominal=0.01)
+    tension: float = output(TENSION, "Tension of a thread", nominal=0.5)
     highest_tension: float = output(
-        "N",
-        "Highest tension so far, on the continuous curve",
-        display="cN",
-        nominal=0.5,
-        highest_of="tension",
+        TENSION, "Highest tension so far, on the continuous curve", nominal=0.5, highest_of="tension"
     )
     lowest_tension: float = output(
-        "N", "Lowest tension so far, on the continuous curve", display="cN", nominal=0.5, lowest_of="tension"
+        TENSION, "Lowest tension so far, on the continuous curve", nominal=0.5, lowest_of="tension"
     )
-    mean_tension: float = output("N", "Mean tension so far", display="cN", nominal=0.5)
+    mean_tension: float = output(TENSION, "Mean tension so far", nominal=0.5)
     frame_load: float = output("N", "Load of the warp on the heald carrier, positive upwards", nominal=100.0)
     potential_energy: float = output(
         "J", "Energy stored in all threads, from the closed shed at pretension", nominal=10.0

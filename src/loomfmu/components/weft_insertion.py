@@ -8,8 +8,20 @@ from ..declaring.declarations import auxiliary, output, parameter
 from ..declaring.variables import MIXED, NOTHING, Problem, Terminal
 from ..physics.linkage import four_bar_margin, spherical_margin, spherical_rocker, weft_motion, wrapped
 from ..physics.shaft import too_far
+from .quantities import (
+    ANGLE,
+    BELT_MASS,
+    INERTIA,
+    LINK_LENGTH,
+    LINK_PLACE,
+    PHASE,
+    RATIO,
+    SMALL_MASS,
+    TRAVEL,
+    WHEEL_DIAMETER,
+)
 from .shaft_driven import TOO_FAR, ShaftDriven
-from .shared_declarations import found_once, link_length, link_place
+from .shared_declarations import OF_SHAFT, found_once
 from .terminals import HEAD
 
 FARTHEST_PHASE = pi / 3.0 + 1e-9  # of the crank from a dead centre that it is sure to belong to
@@ -46,96 +58,51 @@ class WeftInsertion(ShaftDriven):
     )
 
     rocker_angle: float = parameter(
-        "rad",
-        1.0471975511965976,
-        "Arc between the axes BC and AC",
-        display="deg",
-        minimum=0.0,
-        maximum=3.141592653589793,
+        ANGLE.within(0.0, pi), 1.0471975511965976, "Arc between the axes BC and AC"
     )
     crank_cone: float = parameter(
-        "rad",
-        0.4886921905584123,
-        "Half-angle of the crank's cone, AC to OC",
-        display="deg",
-        minimum=0.0,
-        maximum=1.5707963267948966,
+        ANGLE.within(0.0, 0.5 * pi), 0.4886921905584123, "Half-angle of the crank's cone, AC to OC"
     )
     crank_phase: float = parameter(
-        "rad",
+        PHASE,
         0.0,
         "Crank angle at shaft angle 0; the nearest multiple of 180 deg is the outer dead centre (identified)",
-        display="deg",
-        minimum=-7.0,
-        maximum=7.0,
     )
     lead: float = parameter(
-        "rad",
-        0.0,
-        "Angle by which the rapier leads the shaft, on top of crank_phase; negative if late",
-        display="deg",
-        minimum=-7.0,
-        maximum=7.0,
+        PHASE, 0.0, "Angle by which the rapier leads the shaft, on top of crank_phase; negative if late"
     )
-    rocker_offset: float = parameter(
-        "rad",
-        0.17121679962064373,
-        "Angle between the rocker's arms BC and DC",
-        display="deg",
-        minimum=-7.0,
-        maximum=7.0,
-    )
+    rocker_offset: float = parameter(PHASE, 0.17121679962064373, "Angle between the rocker's arms BC and DC")
     planar_linkage: bool = parameter("1", True, "A planar four-bar C-D-K-G follows the rocker")
-    crank_length: float = link_length(0.150, "Length DC")
-    coupler_length: float = link_length(0.245, "Length DK")
-    output_length: float = link_length(0.121, "Length KG")
-    pivot_x: float = link_place(0.243, "Position of G from C, x (identified)")
-    pivot_y: float = link_place(0.258, "Position of G from C, y (identified)")
+    crank_length: float = parameter(LINK_LENGTH, 0.150, "Length DC")
+    coupler_length: float = parameter(LINK_LENGTH, 0.245, "Length DK")
+    output_length: float = parameter(LINK_LENGTH, 0.121, "Length KG")
+    pivot_x: float = parameter(LINK_PLACE, 0.243, "Position of G from C, x (identified)")
+    pivot_y: float = parameter(LINK_PLACE, 0.258, "Position of G from C, y (identified)")
     assembly: int = parameter(
         "1", 1, "Assembly mode of the four-bar: 1 or -1 (identified)", minimum=-1, maximum=1
     )
     gear_ratio: float = parameter(
-        "1", 9.625, "Gear ratio from sector gear to rapier wheel", minimum=1e-3, maximum=1e3
+        RATIO.within(1e-3, 1e3), 9.625, "Gear ratio from sector gear to rapier wheel"
     )
-    wheel_diameter: float = parameter(
-        "m", 0.397, "Bottom diameter of the rapier wheel", display="mm", minimum=1e-3, maximum=10.0
-    )
+    wheel_diameter: float = parameter(WHEEL_DIAMETER, 0.397, "Bottom diameter of the rapier wheel")
     moving_mass: float = parameter(
-        "kg",
-        0.1105,
-        "Mass of head and rigid belt section, counted in shaft_torque",
-        display="g",
-        minimum=0.0,
-        maximum=100.0,
-        nominal=0.1,
+        SMALL_MASS.within(0.0, 100.0), 0.1105, "Mass of head and rigid belt section, counted in shaft_torque"
     )
     wheel_inertia: float = parameter(
-        "kg.m2",
+        INERTIA.within(0.0, 10.0),
         0.0,
         "Inertia that turns with the rapier wheel (none published; 0 leaves it out)",
-        minimum=0.0,
-        maximum=10.0,
     )
     belt_mass: float = parameter(
-        "kg/m",
+        BELT_MASS.within(0.0, 10.0),
         0.0,
         "Mass of the belt per length (0 leaves it out; BeltDynamics assumes 0.05 kg/m)",
-        minimum=0.0,
-        maximum=10.0,
-        nominal=0.1,
     )
     belt_length: float = parameter(
-        "m",
-        3.0,
-        "Length of the belt behind the head, all of which moves (assumed)",
-        minimum=0.0,
-        maximum=20.0,
+        TRAVEL.within(0.0, 20.0), 3.0, "Length of the belt behind the head, all of which moves (assumed)"
     )
     travel: float = output(
-        "m",
-        "Travel of the rapier head from its outer dead centre",
-        rate="velocity",
-        depends=("shaft_angle", "shaft_velocity", "shaft_acceleration"),
+        "m", "Travel of the rapier head from its outer dead centre", rate="velocity", depends=OF_SHAFT
     )
     velocity: float = output("m/s", "Velocity of the rapier head", nominal=10.0, rate="acceleration")
     acceleration: float = output("m/s2", "Acceleration of the rapier head", nominal=1000.0)

@@ -7,7 +7,8 @@ from typing import ClassVar
 from ..declaring.declarations import at_step_end, indicator, output, parameter
 from ..declaring.variables import NOTHING, Component, Terminal
 from ..physics.shaft import carried
-from .head_inputs import head_acceleration, head_travel, head_velocity
+from .quantities import DISTANCE, LENGTH, TRAVEL
+from .shared_declarations import head_acceleration, head_travel, head_velocity
 from .terminals import GIVER, TAKER
 
 BRINGS, TAKES = "the head that brings the weft", "the head that takes the weft"
@@ -25,20 +26,12 @@ class WeftTransfer(Component):
     )
 
     separation: float = parameter(
-        "m",
+        TRAVEL.within(0.0, 100.0),
         4.086,
         "Distance between the tips of the heads at their outer dead centres (identified)",
-        minimum=0.0,
-        maximum=100.0,
     )
     needed_overlap: float = parameter(
-        "m",
-        0.04,
-        "Overlap that the hooks need to hand the weft over (assumed: none is published)",
-        display="mm",
-        minimum=0.0,
-        maximum=10.0,
-        nominal=0.1,
+        DISTANCE, 0.04, "Overlap that the hooks need to hand the weft over (assumed: none is published)"
     )
     inputs_at_step_end: bool = at_step_end()
     giver_travel: float = head_travel(2.0953, BRINGS, "giver_", "weft")
@@ -48,9 +41,8 @@ class WeftTransfer(Component):
     taker_velocity: float = head_velocity(TAKES, "taker_", "weft_2")
     taker_acceleration: float = head_acceleration(0.0, TAKES, "weft_2")
     overlap: float = output(
-        "m",
+        LENGTH,
         "How far the heads have passed each other; negative while they are apart",
-        display="mm",
         rate="closing_velocity",
     )
     closing_velocity: float = output(
@@ -63,9 +55,8 @@ class WeftTransfer(Component):
         "m/s2", "Acceleration of the heads relative to each other", nominal=1000.0
     )
     offset: float = output(
-        "m",
+        LENGTH,
         "Middle between the tips of the heads, from mid-shed towards the taker's side",
-        display="mm",
         rate="offset_velocity",
     )
     offset_velocity: float = output("m/s", "Rate of offset")

@@ -6,17 +6,39 @@ The model description, the FMU's state, the attributes of the traces, the variab
 documentation, the checks of limits and the C struct all come from `variables_of(component)`.
 """
 
-from dataclasses import field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 MAKERS = "parameter, input_, output, state, auxiliary or indicator"
 
 
-def _declared(
-    causality: str, variability: str, start: float | int | bool, display: str | None = None, **rest: Any
-) -> Any:
+@dataclass(frozen=True)
+class Quantity:
+    """The facts that variables of a kind share; a declaration takes it in the place of its unit.
+
+    Limits count for what is set, not for outputs. What a declaration states itself goes before.
+    """
+
+    unit: str
+    display: str | None = None
+    minimum: float | None = None
+    maximum: float | None = None
+    nominal: float | None = None
+
+    def within(self, minimum: float, maximum: float, nominal: float | None = None) -> "Quantity":
+        """This quantity between two limits, in SI."""
+        return replace(self, minimum=minimum, maximum=maximum, nominal=nominal or self.nominal)
+
+
+Unit = str | Quantity
+
+
+def _declared(causality: str, variability: str, start: float | int | bool, **rest: Any) -> Any:
     """The field of a variable; `rest` are the arguments of its declaration under their own names."""
-    rest |= {"causality": causality, "variability": variability, "display": display or rest["unit"]}
+    kind = rest["unit"] if isinstance(rest["unit"], Quantity) else Quantity(rest["unit"])
+    rest |= {name: value for name, value in vars(kind).items() if rest.get(name, ...) is None}
+    rest |= {"causality": causality, "variability": variability, "unit": kind.unit}
+    rest["display"] = rest.get("display") or kind.unit
     return field(default=start, metadata=rest)
 
 
@@ -25,7 +47,7 @@ def _usual(start: float | int | bool) -> str:
 
 
 def parameter(
-    unit: str,
+    unit: Unit,
     start: float | int | bool,
     description: str,
     *,
@@ -53,7 +75,7 @@ def at_step_end() -> Any:
 
 
 def input_(
-    unit: str,
+    unit: Unit,
     start: float | int | bool,
     description: str,
     *,
@@ -73,7 +95,7 @@ def input_(
 
 
 def output(
-    unit: str,
+    unit: Unit,
     description: str,
     *,
     start: float | int | bool = 0.0,
@@ -98,7 +120,7 @@ def output(
 
 
 def state(
-    unit: str,
+    unit: Unit,
     description: str,
     *,
     start: float | int | bool = 0.0,
@@ -113,7 +135,7 @@ def state(
     return _declared(causality="local", variability=_usual(start), **locals())
 
 
-def auxiliary(unit: str, description: str, **rest: Any) -> Any:
+def auxiliary(unit: Unit, description: str, **rest: Any) -> Any:
     """A `state` on whose past only extremes depend: it is computed once, or kept to find an extreme."""
     return state(unit, description, **rest, carried=False)
 

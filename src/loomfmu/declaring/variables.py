@@ -195,11 +195,12 @@ class Terminal:
         return replace(self, variables=variables)
 
 
-def _variable(declared: Field[Any]) -> Variable:
+def variable_of(name: str, declared: Field[Any]) -> Variable:
+    """The variable of a declaration. Raises TypeError for a field that is none."""
     start = declared.default
     if start is MISSING or "causality" not in declared.metadata:
-        raise TypeError(f"{declared.name} is not declared by {MAKERS}")
-    return Variable(name=declared.name, type=type(start), start=start, **declared.metadata)
+        raise TypeError(f"{name} is not declared by {MAKERS}")
+    return Variable(name=name, type=type(start), start=start, **declared.metadata)
 
 
 @dataclass(slots=True)
@@ -243,7 +244,7 @@ class Component:
     @classmethod
     def declared(cls) -> tuple[Variable, ...]:
         """Its variables, in the order of their value references."""
-        return tuple(_variable(each) for each in fields(cls))
+        return tuple(variable_of(each.name, each) for each in fields(cls))
 
     @classmethod
     def longest_step(cls, value: Callable[[str], Any]) -> tuple[float, str]:

@@ -49,9 +49,7 @@ class _Used:
 
 def _text(component: type[Component]) -> str:
     methods = _methods(component)
-    used = _Used()
-    for method in methods.values():
-        _collect(method, used)
+    used = _used_by(methods)
     parts = [HEADER.format(name=component.__name__)]
     if used.from_math:
         parts.append(f"from math import {', '.join(sorted(used.from_math))}\n")
@@ -70,6 +68,13 @@ def _methods(component: type[Component]) -> dict[str, FunctionType]:
             if isinstance(member, FunctionType) and not name.startswith("__"):
                 found[name] = member
     return found
+
+
+def _used_by(methods: dict[str, FunctionType]) -> _Used:
+    used = _Used()
+    for method in methods.values():
+        _collect(method, used)
+    return used
 
 
 def _collect(function: FunctionType, used: _Used) -> None:
@@ -185,8 +190,4 @@ def _array(name: str, variables: tuple[Variable, ...]) -> str:
 def functions(component: type[Component]) -> dict[str, FunctionType]:
     """The methods of a component and the functions of physics that they use."""
     methods = _methods(component)
-    found = dict(methods)
-    used = _Used()
-    for method in methods.values():
-        _collect(method, used)
-    return found | used.functions
+    return methods | _used_by(methods).functions

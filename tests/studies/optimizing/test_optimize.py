@@ -33,6 +33,7 @@ def alone(claim: str) -> Path:
     return path
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("key", "low", "high", "expected"),
     [

@@ -1,1 +1,1 @@
-"""The dobby drive: its law's parameters, the laws, the FMU."""
+"""The dobby drive, and the peaks of its smooth laws."""

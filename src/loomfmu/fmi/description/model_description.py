@@ -1,5 +1,6 @@
-"""modelDescription.xml of an FMI 2.0 co-simulation FMU, derived from a component's declarations."""
+"""modelDescription.xml of an FMI 2.0 or FMI 3.0 FMU, derived from a component's declarations."""
 
+from collections.abc import Collection, Iterator
 from xml.etree.ElementTree import Element, SubElement
 
 from ... import units
@@ -11,13 +12,14 @@ from .xml_text import text_of
 AUTHOR = "the loomfmu authors"
 COPYRIGHT = f"Copyright (c) 2026 {AUTHOR}"
 RELEASED = "2026-11-21T00:00:00Z"  # the day of this version, not of the build: builds repeat
+FMI3_TYPES = {float: "Float64", int: "Int64", bool: "Boolean"}
 DEFAULT_TOLERANCE = 1e-6  # for hosts that ask for one; nothing here is solved to a tolerance
 
 
 def model_description(
     component: type[Component], guid: str, version: str, native: dict[str, str] | None = None
 ) -> bytes:
-    """The model description as XML text, the same bytes for the same declarations.
+    """The model description of FMI 2.0 as XML text, the same bytes for the same declarations.
 
     `native` holds what the native flavour can do beyond the live one.
     """
@@ -25,12 +27,12 @@ def model_description(
     name = component.__name__
     root = Element(
         "fmiModelDescription",
-        {"fmiVersion": "2.0", "modelName": name, "guid": guid} | about(component, version),
+        {"fmiVersion": "2.0", "modelName": name, "guid": guid} | _about(component, version),
     )
     _interfaces(root, component, native)
-    unit_definitions(root, variables)
-    type_definitions(root, name, variables)
-    log_and_experiment(root, component)
+    _unit_definitions(root, variables)
+    _type_definitions(root, name, variables)
+    _log_and_experiment(root, component)
     listed = SubElement(root, "ModelVariables")
     for reference, variable in enumerate(variables, start=FIRST_REFERENCE):
         _scalar(listed, reference, variable, name)
@@ -63,7 +65,7 @@ def _interfaces(root: Element, component: type[Component], native: dict[str, str
             SubElement(SubElement(element, "SourceFiles"), "File", name="fmi2.c")
 
 
-def log_and_experiment(root: Element, component: type[Component]) -> None:
+def _log_and_experiment(root: Element, component: type[Component]) -> None:
     """Log categories and default experiment, which FMI 2 and FMI 3 write alike."""
     categories = SubElement(root, "LogCategories")
     for category, description in CATEGORIES.values():
@@ -79,7 +81,7 @@ def log_and_experiment(root: Element, component: type[Component]) -> None:
     )
 
 
-def about(component: type[Component], version: str) -> dict[str, str]:
+def _about(component: type[Component], version: str) -> dict[str, str]:
     """Attributes of the model as a whole, the same in FMI 2 and FMI 3."""
     return {
         "description": (component.__doc__ or "").splitlines()[0],
@@ -93,7 +95,7 @@ def about(component: type[Component], version: str) -> dict[str, str]:
     }
 
 
-def unit_definitions(root: Element, variables: tuple[Variable, ...], also: tuple[str, ...] = ()) -> None:
+def _unit_definitions(root: Element, variables: tuple[Variable, ...], also: tuple[str, ...] = ()) -> None:
     """Every unit in use, with its SI exponents and its display units."""
     displays: dict[str, set[str]] = {name: {name} for name in also}
     for variable in variables:
@@ -110,7 +112,7 @@ def unit_definitions(root: Element, variables: tuple[Variable, ...], also: tuple
             SubElement(definition, "DisplayUnit", name=display, factor=repr(factor))
 
 
-def type_definitions(root: Element, name: str, variables: tuple[Variable, ...], fmi: int = 2) -> None:
+def _type_definitions(root: Element, name: str, variables: tuple[Variable, ...], fmi: int = 2) -> None:
     """An enumeration type for each variable that has choices."""
     chosen = [variable for variable in variables if variable.choices]
     if not chosen:
@@ -139,10 +141,10 @@ def _scalar(listed: Element, reference: int, variable: Variable, model: str) -> 
     if not variable.settable:
         scalar.set("initial", "calculated")
     kind = "Enumeration" if variable.choices else FMI_TYPES[variable.type]
-    SubElement(scalar, kind, attributes_of(variable, model))
+    SubElement(scalar, kind, _attributes_of(variable, model))
 
 
-def attributes_of(variable: Variable, model: str) -> dict[str, str]:
+def _attributes_of(variable: Variable, model: str) -> dict[str, str]:
     """Start, limits, unit and type of a variable, which FMI 2 and FMI 3 call by the same names."""
     attributes: dict[str, str] = {}
     if variable.settable:
@@ -173,18 +175,22 @@ def _text(value: float | int | bool) -> str:
 def _structure(root: Element, variables: tuple[Variable, ...]) -> None:
     """Outputs with the inputs they depend on, and the unknowns of the initialization."""
     index = {variable.name: position for position, variable in enumerate(variables, start=1)}
-    inputs = [variable.name for variable in variables if variable.causality == "input"]
     structure = SubElement(root, "ModelStructure")
     outputs = SubElement(structure, "Outputs")
     unknowns = SubElement(structure, "InitialUnknowns")
-    for variable in variables:
-        if variable.causality != "output":
-            continue
-        needed = inputs if variable.depends is None else variable.depends
+    for variable, needed in _dependencies(variables):
         # FMI 2.0 has no variable that is the time
         dependencies = " ".join(map(str, sorted(index[name] for name in needed if name != TIME)))
         SubElement(outputs, "Unknown", index=str(index[variable.name]), dependencies=dependencies)
         SubElement(unknowns, "Unknown", index=str(index[variable.name]))
+
+
+def _dependencies(variables: tuple[Variable, ...]) -> Iterator[tuple[Variable, Collection[str]]]:
+    """Each output with the inputs it depends on, the time among them if it is declared."""
+    inputs = [variable.name for variable in variables if variable.causality == "input"]
+    for variable in variables:
+        if variable.causality == "output":
+            yield variable, inputs if variable.depends is None else variable.depends
 
 
 def output_order(component: type[Component]) -> int:
@@ -197,3 +203,87 @@ def output_order(component: type[Component]) -> int:
             order, rate = order + 1, rates[rate]
         longest = max(longest, order)
     return longest
+
+
+# FMI 3.0
+
+
+def model_description3(component: type[Component], token: str, version: str) -> bytes:
+    """The model description of FMI 3.0 as XML text, the same bytes for the same declarations."""
+    variables = variables_of(component)
+    name = component.__name__
+    root = Element(
+        "fmiModelDescription",
+        {"fmiVersion": "3.0", "modelName": name, "instantiationToken": token} | _about(component, version),
+    )
+    common = {
+        "modelIdentifier": name,
+        "canGetAndSetFMUState": "true",
+        "canSerializeFMUState": "true",
+        "providesDirectionalDerivatives": "true",
+        "providesAdjointDerivatives": "true",
+    }
+    if component.keeps == NOTHING:
+        SubElement(root, "ModelExchange", common | {"needsCompletedIntegratorStep": "true"})
+    order = str(output_order(component))
+    steps = {"canHandleVariableCommunicationStepSize": "true", "maxOutputDerivativeOrder": order}
+    SubElement(root, "CoSimulation", common | steps)
+    _unit_definitions(root, variables, also=("s",))
+    _type_definitions(root, name, variables, fmi=3)
+    _log_and_experiment(root, component)
+    listed = SubElement(root, "ModelVariables")
+    for reference, variable in enumerate(variables, start=FIRST_REFERENCE):
+        _variable3(listed, reference, variable, name)
+    SubElement(
+        listed,
+        "Float64",
+        name="time",
+        valueReference=str(_time_reference(variables)),
+        causality="independent",
+        variability="continuous",
+        unit="s",
+        description="Simulation time",
+    )
+    _structure3(root, variables)
+    return text_of(root)
+
+
+def _variable3(listed: Element, reference: int, variable: Variable, model: str) -> None:
+    """One variable with its type, unit, limits and start, all of them in one element."""
+    kind = "Enumeration" if variable.choices else FMI3_TYPES[variable.type]
+    attributes = {
+        "name": variable.structured,
+        "valueReference": str(reference),
+        "causality": variable.causality,
+        "variability": variable.variability,
+        "description": variable.description,
+    }
+    if not variable.settable:
+        attributes["initial"] = "calculated"
+    SubElement(listed, kind, attributes | _attributes_of(variable, model))
+
+
+def _time_reference(variables: tuple[Variable, ...]) -> int:
+    """The value reference of the time: the one after all others."""
+    return FIRST_REFERENCE + len(variables)
+
+
+def _structure3(root: Element, variables: tuple[Variable, ...]) -> None:
+    """Outputs with what they depend on (inputs, parameters and time), and the unknowns of the start."""
+    references = {
+        variable.name: reference for reference, variable in enumerate(variables, start=FIRST_REFERENCE)
+    }
+    references[TIME] = _time_reference(variables)
+    parameters = [variable.name for variable in variables if variable.causality == "parameter"]
+    structure = SubElement(root, "ModelStructure")
+    outputs = list(_dependencies(variables))
+    for variable, needed in outputs:
+        timed = () if variable.depends == () else (TIME,)
+        places = sorted({references[name] for name in (*needed, *parameters, *timed)})
+        own = str(references[variable.name])
+        SubElement(structure, "Output", valueReference=own, dependencies=" ".join(map(str, places)))
+    for variable, _needed in outputs:
+        SubElement(structure, "InitialUnknown", valueReference=str(references[variable.name]))
+    for variable in variables:
+        if variable.indicator:
+            SubElement(structure, "EventIndicator", valueReference=str(references[variable.name]))

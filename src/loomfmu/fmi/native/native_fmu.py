@@ -9,8 +9,7 @@ from ...components import COMPONENTS
 from ...declaring.variables import Component
 from ...files import write_file
 from ...version import __version__
-from ..description.model_description import model_description, output_order
-from ..description.model_description3 import model_description3
+from ..description.model_description import model_description, model_description3, output_order
 from ..fmu_files import FMU, HEADERS, beside, described, file_in, license_of, license_of_headers, zipped
 from ..live_fmu import guid
 from .compiler import ARITHMETIC, MINGW, binaries, mingw_licence

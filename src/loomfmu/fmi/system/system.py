@@ -3,12 +3,15 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
+from typing import Any
 
-from ...declaring.variables import TIME, Component, Problem, Terminal, Variable, variables_of
+from ...declaring.declarations import parameter
+from ...declaring.variables import TIME, Component, Problem, Terminal, Variable, variable_of, variables_of
 
 Value = float | int | bool
 Reach = Callable[[str], tuple[str, ...]]
 STEP, STEPS = "step", "steps_per_revolution"  # the parameter that sets the grid, as scenes call it
+REFERENCES = ("rate", "lowest_of", "highest_of", "when", "unless", "valid_if", "error")  # to variables
 SPEED = "shaft.speed"  # with which a grid by revolutions goes
 
 
@@ -74,38 +77,16 @@ def component_of(system: System) -> type[Component]:
 
 def _grid(system: System) -> Variable:
     """The parameter that sets the grid."""
+    about, most = "whatever the communication step", 1_000_000_000
     if system.step:
-        return Variable(
-            STEP,
-            float,
-            "parameter",
-            "fixed",
-            "s",
-            "s",
-            system.step,
-            "Step of the components, whatever the communication step",
-            minimum=1e-12,
-            maximum=1e9,
-        )
-    return Variable(
-        STEPS,
-        int,
-        "parameter",
-        "fixed",
-        "1",
-        "1",
-        system.steps,
-        f"Steps of the components in a revolution at {SPEED}, whatever the communication step",
-        minimum=1,
-        maximum=1_000_000_000,
-    )
+        given = parameter("s", system.step, f"Step of the components, {about}", minimum=1e-12, maximum=1e9)
+        return variable_of(STEP, given)
+    text = f"Steps of the components in a revolution at {SPEED}, {about}"
+    return variable_of(STEPS, parameter("1", system.steps, text, minimum=1, maximum=most))
 
 
 def _variables(system: System, part: Part, reach: Reach) -> list[Variable]:
     """The variables of a part as those of the system: what is wired, or not an output of it, stays inside."""
-
-    def dotted(name: str | None) -> str | None:
-        return None if name is None else f"{part.name}.{name}"
 
     found = []
     for each in variables_of(part.component):
@@ -113,22 +94,19 @@ def _variables(system: System, part: Part, reach: Reach) -> list[Variable]:
         causality = each.causality
         if causality == "output" or name in system.wires or name in system.drives:
             causality = "output" if name in system.outputs else "local"
+        dotted: dict[str, Any] = {
+            key: f"{part.name}.{there}" for key in REFERENCES if (there := getattr(each, key))
+        }
         own = replace(
             each,
             name=name,
             element=f"{part.name}.{each.member}",
             causality=causality,
             start=each.type(part.values.get(each.name, each.start)),
-            rate=dotted(each.rate),
             depends=(reach(name) or _of_time(each)) if causality == "output" else None,
             indicator=False,
             source=None,
-            lowest_of=dotted(each.lowest_of),
-            highest_of=dotted(each.highest_of),
-            when=dotted(each.when),
-            unless=dotted(each.unless),
-            valid_if=dotted(each.valid_if),
-            error=dotted(each.error),
+            **dotted,
         )
         found.append(own)
     return found
