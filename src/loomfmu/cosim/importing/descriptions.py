@@ -6,11 +6,11 @@ from collections.abc import Collection, Iterable
 from dataclasses import replace
 from typing import Any
 
-from ... import units
 from ...declaring.variables import ALONE, SHARED, Beside, Component, Variable, beside, variables_of
 from ...errors import LONGEST_NAME, check_text, shown
 from ...fmi.description.references import FIRST_REFERENCE, FMI_TYPES
-from .ports import BASES, RANGES, Definition, Port, Value, own_definition, own_name, shown_in
+from .conversions import BASES, Definition, own_definition, stated
+from .ports import RANGES, Port, Value, shown_in
 
 # FMI type -> how scenes and the master know it; what is not here, such as String, is left out
 KINDS = {
@@ -169,15 +169,18 @@ def _port(variable: Any, name: str, rates: dict[str, str], definitions: dict[str
         return own if own is not None or declared is None else getattr(declared, attribute)
 
     given = (said("unit") or "") if kind == "Real" else "1"
-    definition = definitions.get(given)
-    unit = own_name(given, definition) or given
+    unit = stated(given, definitions.get(given))
+    definition = unit.definition if unit else None
+    if definition is not None and said("relativeQuantity"):  # a difference of temperatures has no offset
+        definition = replace(definition, offset=0.0)
+    name_of_unit = unit.name if unit else "1"
     return Port(
         name=name,
         kind=kind,
         reference=variable.valueReference,
         causality=variable.causality,
-        unit=unit or "1",
-        display=shown_in(unit or "1", said("displayUnit") or ""),
+        unit=name_of_unit,
+        display=shown_in(name_of_unit, said("displayUnit") or ""),
         minimum=min(values) if values else _limit(kind, said("min")),
         maximum=max(values) if values else _limit(kind, said("max")),
         start=None if variable.start is None else _start(variable.type, variable.start),
@@ -188,8 +191,8 @@ def _port(variable: Any, name: str, rates: dict[str, str], definitions: dict[str
         own=variable.name,
         base_type=variable.type,
         discrete=variable.variability == "discrete",
-        has_unit=given != "",
-        definition=own_definition(unit) if unit in units.UNITS else definition,
+        has_unit=unit is not None,
+        definition=definition,
         nominal=_limit(kind, said("nominal")),
     )
 

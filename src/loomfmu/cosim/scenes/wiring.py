@@ -7,11 +7,13 @@ from typing import Any
 from ...components import COMPONENTS
 from ...declaring.variables import Terminal, Variable
 from ...errors import LoomfmuError, shown, suggestion
+from ..importing.conversions import SAME, Linear
 from ..importing.facts import ALL, Facts, facts_of
-from ..importing.ports import mismatch
+from ..importing.ports import conversion
 from ..standard import standard
 from .graph import Drive, Wire, drive
 from .instances import Instance, is_numbered, members, stem
+from .settings import dotted
 
 Known = Mapping[str, Facts]  # of the instances whose component is known, by their names
 
@@ -55,16 +57,8 @@ def wires_of(instances: dict[str, Instance], scene: Mapping[str, Any]) -> list[W
     return wires
 
 
-def dotted(table: dict[str, Any], prefix: str = "") -> dict[str, Any]:
-    """A TOML table with its keys joined by dots, quoted or not."""
-    flat: dict[str, Any] = {}
-    for key, value in table.items():
-        flat |= dotted(value, f"{prefix}{key}.") if isinstance(value, dict) else {prefix + key: value}
-    return flat
-
-
-def wire(instances: dict[str, Instance], sink: str, source: Any) -> Wire:
-    """A wire whose ends are known, of the right kind and of the same unit."""
+def wire(instances: dict[str, Instance], sink: str, source: Any, known: Linear | None = None) -> Wire:
+    """A wire whose ends are known and of the right kind; its units are converted, if that is not `known`."""
     if not isinstance(source, str):
         raise LoomfmuError(
             f'wires: "{sink}" = {shown(source).lower()} must be an output, or false to cut the wire'
@@ -86,10 +80,14 @@ def wire(instances: dict[str, Instance], sink: str, source: Any) -> Wire:
     to, origin = (instances[name].fmu.ports[variable] for name, variable in ends)
     if origin.kind != to.kind:
         raise LoomfmuError(f"{where}: {source} is of type {origin.kind}, {sink} of type {to.kind}")
-    reason = mismatch(str(source), origin, sink, to)
-    if reason:
-        raise LoomfmuError(f"{where}: {reason}")
-    return Wire(source=ends[1], sink=ends[0])
+    if known is None:
+        try:
+            known = conversion(source, origin.stated, sink, to.stated)
+        except LoomfmuError as error:
+            raise LoomfmuError(f"{where}: {error}") from None
+    elif known != SAME and to.kind != "Real":
+        raise LoomfmuError(f"{where}: a value of type {to.kind} cannot be transformed")
+    return Wire(source=ends[1], sink=ends[0], conversion=known)
 
 
 def drives_of(instances: dict[str, Instance], wires: list[Wire], table: Any) -> list[Drive]:

@@ -19,8 +19,8 @@ from ...fmi.description.xml_text import text_of
 from ...fmi.native import platforms as native
 from ...version import __version__
 from ..importing import fmus
+from ..importing.conversions import Definition
 from ..importing.fmus import Fmu, Port, Value
-from ..importing.ports import Definition
 from ..scenes.headings import heading
 from ..scenes.instances import Instance
 from ..scenes.scene import Scene, files_of

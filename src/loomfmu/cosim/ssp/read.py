@@ -13,19 +13,21 @@ from typing import Any
 from xml.etree.ElementTree import Element
 
 from ...declaring.variables import AT_STEP_END
-from ...errors import LoomfmuError, shown, why
+from ...errors import LoomfmuError, listed, shown, why
 from ...own.declared import PARAMETER_SETS
 from ..importing import fmus
+from ..importing.conversions import SAME, Stated, stated
 from ..importing.descriptions import plain_names
 from ..importing.fmus import Fmu
-from ..scenes.instance_tables import overridden, override, prevailing, unit_of
+from ..importing.ports import conversion
+from ..scenes.instance_tables import overridden, override, prevailing, state_units, unit_of
 from ..scenes.instances import Instance, check_name
 from ..scenes.scene import Scene, assemble
 from ..scenes.settings import DEEPEST, TIMES, toml
-from .connections import Names, Nets, Node
+from .connections import Nets, Node
 from .package import Package
 from .values import Given, apply, bound
-from .xml import FMU, OSP, OURS, SSD_FILE, full, read_units, real, required
+from .xml import FMU, OSP, OURS, SSD_FILE, full, read_units, real, required, transformed
 
 # keys of a scene that no structure can hold
 KEPT = ("title", "description", "coupling", "record", "inputs", "claims", "tolerances")
@@ -59,6 +61,7 @@ class _Reader:
     def __init__(self, package: Package):
         self.package = package
         self.notes: list[str] = []
+        self.unitless: list[str] = []  # values with a unit for variables without one
         self.root = package.root(SSD_FILE)
         self.units = read_units(self.root.iterfind(full("ssd:Units")))
 
@@ -73,10 +76,17 @@ class _Reader:
         text = None if annotation is None else toml(annotation.text or "")
         stated = _stated(found, text or {}, overrides)
         instances = {name: self._instance(name, each.element, stated[name]) for name, each in found.items()}
-        nets = Nets(system, instances, names)
-        for name, values in self._values(system, found, names, nets).items():
+        connectors = {node: self._unit(each) for node, each in _system_connectors(system).items()}
+        nets = Nets(system, instances, names, connectors)
+        for name, values in self._values(system, found, nets, connectors).items():
             self._set(instances[name], values, ours=text is not None)
+        if self.unitless:
+            taken = f"values are taken as they are where the variable has no unit: {listed(self.unitless)}"
+            lacking = self.unitless[0].partition(" ")[0].replace(".", ".units.", 1)
+            self.notes.append(f"{taken}; state it by --set {lacking}=...")
         wires = nets.wires
+        if text and text.get("claims") and any(transformed(each, "") != SAME for each in self.root.iter()):
+            raise LoomfmuError("a connection transforms its value, so the claims cannot be judged")
         tables = self._foreign_tables() if annotation is None else _our_tables(text or {}, annotation)
         if text is not None:
             for instance in instances.values():
@@ -108,13 +118,16 @@ class _Reader:
     # ---- instances
 
     def _values(
-        self, system: Element, found: Mapping[str, _Found], names: Names, nets: Nets
+        self,
+        system: Element,
+        found: Mapping[str, _Found],
+        nets: Nets,
+        connectors: Mapping[Node, Stated | None],
     ) -> dict[str, list[Given]]:
         """The values of each instance in the order they are set: those of outer systems last."""
         values = {name: list(bound(each.element, self.package.root)) for name, each in found.items()}
-        dotted = {".".join(path): name for path, name in names.items()}
+        dotted = {".".join(each.path): name for name, each in found.items()}
         most = max(name.count(".") for name in dotted) + 1
-        connectors = _system_connectors(system)
         for path, element in reversed(list(_systems(system))):  # the outermost last: it prevails
             for given in bound(element, self.package.root):
                 parts = (*path, *given.name.split(".", most))
@@ -122,17 +135,19 @@ class _Reader:
                 name, end = next(((dotted[head], end) for head, end in heads if head in dotted), ("", 0))
                 whole = ".".join(parts)
                 node = next((each for each in _nodes(whole) if each in connectors), None)
-                takers = nets.reached(node) if node else []
+                inside = connectors[node] if node else None
+                takers = nets.reached(node, inside or given.unit) if node else []
                 if name:
                     values[name].append(replace(given, name=".".join(parts[end:])))
                 elif node is None:
                     self.notes.append(f"{whole} of the package is ignored: there is no such component")
                 elif not takers:
                     self.notes.append(f"{whole} of the package is ignored: no free input takes it")
-                elif not given.unit and (unit := connectors[node]):
-                    given = replace(given, unit=unit, definition=self.units.get(unit))
-                for taker, variable in [] if name else takers:
-                    values[taker].append(replace(given, name=variable))
+                for taken in [] if name else takers:
+                    taker, variable = nets.variable(taken.node)
+                    entered = conversion(whole, given.unit, "its connector", inside)
+                    made = entered.then(given.transformation).then(taken.conversion)
+                    values[taker].append(replace(given, name=variable, unit=taken.unit, transformation=made))
         return values
 
     def _instance(self, name: str, element: Element, stated: Any) -> Instance:
@@ -149,7 +164,7 @@ class _Reader:
 
     def _set(self, instance: Instance, values: Iterable[Given], ours: bool) -> None:
         """Give an instance its values; `ours` says whether we made the package."""
-        self.notes += filter(None, [apply(instance, given) for given in values])
+        self.notes += filter(None, [apply(instance, given, self.unitless) for given in values])
         if instance.fmu.ours and not ours:  # what was meant for another master: ours goes by dependencies
             instance.values.pop(AT_STEP_END, None)
         instance.settle()
@@ -158,12 +173,17 @@ class _Reader:
         """The units that connectors state, where the FMU itself states none."""
         ports = dict(fmu.ports)
         for connector in element.iterfind(f"{full('ssd:Connectors')}/{full('ssd:Connector')}"):
-            unit = _unit(connector)
+            unit = self._unit(connector)
             port = ports.get(fmu.name_of(required(connector, "name")))
             if unit and port is not None and port.kind == "Real":
-                where = f"{name}.{port.name}"
-                ports[port.name] = port.with_unit(unit, self.units.get(unit), where)
+                ports[port.name] = port.with_unit(unit.name, unit.definition, f"{name}.{port.name}")
         return replace(fmu, ports=ports)
+
+    def _unit(self, connector: Element) -> Stated | None:
+        """The unit that a connector states, if it does."""
+        real = connector.find(full("ssc:Real"))
+        name = "" if real is None else real.get("unit", "")
+        return stated(name, self.units.get(name))
 
     # ---- the rest
 
@@ -206,16 +226,10 @@ def _systems(system: Element, path: tuple[str, ...] = ()) -> Iterator[tuple[tupl
         yield from _systems(element, (*path, required(element, "name")))
 
 
-def _unit(connector: Element) -> str:
-    """The unit that a connector states, or an empty text."""
-    real = connector.find(full("ssc:Real"))
-    return "" if real is None else real.get("unit", "")
-
-
-def _system_connectors(system: Element) -> dict[Node, str]:
-    """The connectors of a system and of the systems in it, with the units that they state."""
+def _system_connectors(system: Element) -> dict[Node, Element]:
+    """The connectors of a system and of the systems in it."""
     return {
-        (path, required(each, "name")): _unit(each)
+        (path, required(each, "name")): each
         for path, element in _systems(system)
         for each in element.iterfind(f"{full('ssd:Connectors')}/{full('ssd:Connector')}")
     }
@@ -257,6 +271,7 @@ def _names(found: list[_Found]) -> dict[str, _Found]:
 def _stated(names: Iterable[str], text: dict[str, Any], overrides: dict[str, Any]) -> dict[str, Any]:
     """The units that the text of our scene states for each instance, and those that are set."""
     tables = {name: {"units": text.get(name, {}).get("units", {})} for name in names}
+    state_units(tables, text.get("units", {}))
     for key in overrides:
         if unit_of(key.partition(".")[2]):
             override(tables, key, overrides)
