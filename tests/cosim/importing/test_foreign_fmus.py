@@ -1,5 +1,6 @@
 """Third-party FMUs, FMI 2.0 and 3.0, wired to ours: a motor in C with an exact solution."""
 
+import re
 from collections.abc import Iterator
 from contextlib import nullcontext, suppress
 from dataclasses import replace
@@ -7,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from foreign_motors import description2, library, motor2, packed
+from foreign_motors import ARRAYS, description2, library, motor2, motor3, packed
 from hypothesis import given
 from hypothesis import strategies as st
 from motor_scenes import LENGTH, MOTOR, SHAFT3, WEFT, exact, ran, refused
@@ -174,6 +175,72 @@ def test_run_says_how_long(place: Path, tmp_path: Path, capsys: pytest.CaptureFi
         'changed from the scene "A motor"',
     ]
     assert Trace(trace).attributes["step"] == 0.002
+
+
+# ---- arrays of FMI 3, and locals
+
+TABLE = LENGTH + 'record = ["*", "one.twice_*"]\n[one]\nfmu = "Motor3.fmu"\ntable = [3, 2]\n'
+
+
+@pytest.mark.parametrize("isolated", [True, False])
+def test_arrays_are_set_wired_and_recorded(tmp_path: Path, isolated: bool) -> None:
+    motor3(tmp_path, description=ARRAYS)
+    text = TABLE + 'u = [[1, 2], [3, 4]]\n[two]\nfmu = "Motor3.fmu"\n"u[2,1]" = 7\n'
+    text += '[three]\nfmu = "Motor3.fmu"\n[wires]\n"three.u" = "one.y"\n'
+    text += '"two.u[1,2]" = "one.y[2,1]"\n"two.u[2,2]" = "one.velocity"\n'
+    trace = ran(tmp_path, text, tmp_path, isolated=isolated).trace
+    speed = trace["one.velocity"]
+    one, two, three = (
+        [trace[f"{name}.y_{row}_{column}"] for row in (1, 2) for column in (1, 2)]
+        for name in ("one", "two", "three")
+    )
+    np.testing.assert_array_equal(one, [3.0 * u + 2.0 * speed for u in (1.0, 2.0, 3.0, 4.0)])
+    driving = [0.5, one[2], 7.0, speed]  # where nothing is said, the start value for all elements
+    np.testing.assert_array_equal(two, [1.0 * u + 2.0 * speed for u in driving])
+    np.testing.assert_array_equal(three, [1.0 * u + 2.0 * speed for u in one])
+    np.testing.assert_array_equal(trace["one.twice_2"], np.float32(2.0 * speed))
+    assert "two.twice_2" not in trace and "one.huge_1" not in trace
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("u = [1, 2, 3]\n", "one.u is an array up to [2,2]: 4 values, not 3"),
+        ("u = [1, 2, 3, true]\n", "one.u_2_2: True is not a quantity such as"),
+        ('[wires]\n"one.u" = "one.table"\n', "wire one.table -> one.u: 2 values for 4"),
+        ('[wires]\n"one.u" = "one.velocity"\n', "wire one.velocity -> one.u: 1 values for 4"),
+    ],
+)
+def test_arrays_of_another_size_are_refused(tmp_path: Path, text: str, said: str) -> None:
+    motor3(tmp_path, description=ARRAYS)
+    assert said in refused(tmp_path, TABLE + text)
+
+
+def test_arrays_are_not_more_than_a_trace_can_hold(tmp_path: Path) -> None:
+    large = "".join(
+        f'<Float64 name="a{n}" valueReference="{100 + n}"><Dimension start="1000"/></Float64>'
+        for n in range(101)
+    )
+    motor3(tmp_path, description=ARRAYS.replace("<String ", large + "<String "))
+    assert refused(tmp_path, TABLE).endswith("cannot be read (its arrays have more than 100000 elements)")
+
+
+def test_start_values_of_an_array_are_one_or_one_for_each_element(tmp_path: Path) -> None:
+    motor3(tmp_path, description=ARRAYS.replace('start="0.5"', 'start="1 2 3"'))
+    assert "'u' has 4 elements and 3 start values" in refused(tmp_path, TABLE)
+
+
+def test_locals_are_recorded_when_they_are_asked_for(place: Path, tmp_path: Path) -> None:
+    outputs = r'(name="(?:flange|time|steps|at_speed|winding)[^>]*causality=)"output"'
+    inner = re.sub(outputs, r'\1"local"', description2())
+    packed(tmp_path / "Inner.fmu", inner, library("fmi2.c"), "Motor")
+    text = MOTOR.replace("Motor", "Inner")
+    trace = ran(tmp_path, f'record = ["motor.*"]\n{text}', tmp_path).trace
+    outer = ran(place, MOTOR, tmp_path / "outer").trace
+    assert set(trace) == set(outer)
+    np.testing.assert_array_equal(trace["motor.flange_w"], outer["motor.flange_w"])
+    assert list(ran(tmp_path, f'record = ["motor.steps"]\n{text}', tmp_path).trace) == ["motor.steps"]
+    assert not list(ran(tmp_path, text, tmp_path).trace)
 
 
 # ---- units on wires: converted where both are known, never guessed

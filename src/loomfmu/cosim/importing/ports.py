@@ -12,6 +12,7 @@ from .conversions import SAME, SCALES, Definition, Linear, Stated, stated
 
 Value = float | int | bool
 _WHOLE = re.compile(r"\s*[-+]?[0-9]{1,400}\s*")  # as a real a longer one is infinite
+ELEMENT = 2**32  # references of an array's elements count these from 1, beyond the array's own
 CARRIED = (-(2**31), 2**31 - 1)  # the integers that a master carries: those of FMI 2.0
 # what variables of an FMI type can hold; the others hold any finite number
 RANGES: dict[str, tuple[float, float]] = {
@@ -39,7 +40,8 @@ class Port:
 
     `name` is what scenes and traces call it: letters, digits and _. `own` is the FMU's own name for it,
     `base_type` its type there.
-    `beside` are the outputs that say more of it.
+    `beside` are the outputs that say more of it. `inner` is a local that a scene records as it does outputs.
+    `array` is the FMU's name of the array that it is an element of; then `reference` has its number, too.
     """
 
     name: str
@@ -62,6 +64,8 @@ class Port:
     definition: Definition | None = None
     nominal: float | None = None
     beside: Beside = ALONE
+    inner: bool = False
+    array: str = ""
 
     @property
     def stated(self) -> Stated | None:

@@ -52,6 +52,16 @@ class Instance:
                 raise LoomfmuError(f"{self.name}.pattern: a {self.fmu.name} has no pattern")
             self.values |= standard().pattern(given, f"{self.name}.pattern")
             return
+        if elements := self.fmu.elements(key):
+            content = _flat(given)
+            if len(content) != len(elements):
+                shape = elements[-1].own.removeprefix(elements[-1].array)
+                raise LoomfmuError(
+                    f"{self.name}.{key} is an array up to {shape}: {len(elements)} values, not {len(content)}"
+                )
+            for port, each in zip(elements, content, strict=True):
+                self.set(port.name, each)
+            return
         name = self.fmu.name_of(key)
         if key == ISOLATED and name not in self.fmu.ports:
             self.isolated = truth(given, f"{self.name}.{key}")
@@ -206,6 +216,11 @@ def altered(original: Copied, **others: Any) -> Copied:
     made = object.__new__(type(original))
     made.__dict__.update(original.__dict__, **others)
     return made
+
+
+def _flat(given: Any) -> list[Any]:
+    """The values of an array row by row, of lists in lists."""
+    return [value for each in given for value in _flat(each)] if isinstance(given, list) else [given]
 
 
 def _can_be_set(port: Port) -> bool:

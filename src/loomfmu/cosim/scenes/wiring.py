@@ -48,7 +48,8 @@ def wires_of(instances: dict[str, Instance], scene: Mapping[str, Any]) -> list[W
                 raise LoomfmuError(f"wires: {sink!r} is not wired{suggestion(sink, sources)}")
         else:
             sources[sink] = source
-    wires = [wire(instances, sink, source) for sink, source in sources.items()]
+    pairs = (pair for sink, source in sources.items() for pair in _elements(instances, sink, source))
+    wires = [wire(instances, sink, source) for sink, source in pairs]
     fed = {each.sink for each in wires}
     for inheriting in instances.values():
         inheriting.inherit(instances, fed)
@@ -88,6 +89,20 @@ def wire(instances: dict[str, Instance], sink: str, source: Any, known: Linear |
     elif known != SAME and to.kind != "Real":
         raise LoomfmuError(f"{where}: a value of type {to.kind} cannot be transformed")
     return Wire(source=ends[1], sink=ends[0], conversion=known)
+
+
+def _elements(instances: dict[str, Instance], sink: str, source: Any) -> list[tuple[str, Any]]:
+    """The wires that one between arrays stands for, or itself."""
+    parts = [str(end).partition(".") for end in (sink, source)]
+    arrays = [
+        instances[name].fmu.elements(variable) if name in instances else [] for name, _, variable in parts
+    ]
+    ends = [[f"{part[0]}.{each.name}" for each in array] for part, array in zip(parts, arrays, strict=True)]
+    if not any(ends):
+        return [(sink, source)]
+    if len(ends[0]) != len(ends[1]):
+        raise LoomfmuError(f"wire {source} -> {sink}: {len(ends[1]) or 1} values for {len(ends[0]) or 1}")
+    return list(zip(*ends, strict=True))
 
 
 def drives_of(instances: dict[str, Instance], wires: list[Wire], table: Any) -> list[Drive]:
