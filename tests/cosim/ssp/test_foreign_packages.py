@@ -348,12 +348,16 @@ MISTAKES = {
     "../x.fmu is not in the package": component('source="../x.fmu"'),
     "http://host/x.fmu is not in the package": component('source="http://host/x.fmu"'),
     "Component has no source": component(""),
-    "bus is a SignalDictionaryReference: only FMUs and systems are supported": {
+    "bus: there is no signal dictionary 'd'": {
         "other": '<ssd:SignalDictionaryReference name="bus" dictionary="d"/>'
     },
-    "x: 'a.ssp' is not an FMU but 'application/x-ssp-package'": component(
-        'source="a.ssp" type="application/x-ssp-package"'
-    ),
+    "x is a Note: only FMUs, systems and dictionaries are supported": {"other": '<ssd:Note name="x"/>'},
+    "x: 'a.mo' is not an FMU but 'text/x-modelica'": component('source="a.mo" type="text/x-modelica"'),
+    "a.ssp is not in the package": component('source="a.ssp" type="application/x-ssp-package"'),
+    "startIndices = '1' is not supported": {
+        "connection": '<ssd:Connection startElement="drive" startConnector="phi" startIndices="1"'
+        ' endElement="left head" endConnector="shaft_angle"/>'
+    },
     "drive_motor.load.tau is connected to 2 outputs": {
         "connection": "".join(
             connected(f"left head.{output}", "drive.free")["connection"]

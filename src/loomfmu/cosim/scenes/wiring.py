@@ -48,7 +48,7 @@ def wires_of(instances: dict[str, Instance], scene: Mapping[str, Any]) -> list[W
                 raise LoomfmuError(f"wires: {sink!r} is not wired{suggestion(sink, sources)}")
         else:
             sources[sink] = source
-    pairs = (pair for sink, source in sources.items() for pair in _elements(instances, sink, source))
+    pairs = (pair for sink, source in sources.items() for pair in elements(instances, sink, source))
     wires = [wire(instances, sink, source) for sink, source in pairs]
     fed = {each.sink for each in wires}
     for inheriting in instances.values():
@@ -91,7 +91,7 @@ def wire(instances: dict[str, Instance], sink: str, source: Any, known: Linear |
     return Wire(source=ends[1], sink=ends[0], conversion=known)
 
 
-def _elements(instances: dict[str, Instance], sink: str, source: Any) -> list[tuple[str, Any]]:
+def elements(instances: dict[str, Instance], sink: str, source: Any) -> list[tuple[str, Any]]:
     """The wires that one between arrays stands for, or itself."""
     parts = [str(end).partition(".") for end in (sink, source)]
     arrays = [

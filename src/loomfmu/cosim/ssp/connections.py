@@ -1,6 +1,6 @@
 """The connections of a system package as wires, straight through the connectors of its systems."""
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Container, Iterator, Mapping
 from dataclasses import dataclass
 from xml.etree.ElementTree import Element
 
@@ -9,10 +9,10 @@ from ..importing.conversions import SAME, Linear, Stated
 from ..importing.ports import conversion
 from ..scenes.graph import Wire
 from ..scenes.instances import Instance
-from ..scenes.wiring import wire
+from ..scenes.wiring import elements, wire
+from .structure import Node, connectors, dictionary, systems
 from .xml import full, required, suppressed, transformed
 
-Node = tuple[tuple[str, ...], str]  # an element, as the names that lead to it, and a connector of it
 Names = Mapping[tuple[str, ...], str]  # the instance that each component is, by the names that lead to it
 
 
@@ -49,7 +49,7 @@ class Nets:
     ):
         self._instances, self._names, self._units = instances, names, units
         self._links: dict[Node, list[tuple[Node, Link]]] = {}
-        for one, other, link in _connections(system):
+        for one, other, link in _connections(system, units):
             self._links.setdefault(one, []).append((other, link))
             self._links.setdefault(other, []).append((one, link))
         self._causality = {node: _causality(node, instances, names) for node in self._links}
@@ -68,7 +68,8 @@ class Nets:
             if len(found) > 1:
                 raise LoomfmuError(f"{name} is connected to {len(found)} outputs")
             for (path, connector), made in found.items():
-                wires.append(wire(self._instances, name, f"{self._names[path]}.{connector}", made))
+                pairs = elements(self._instances, name, f"{self._names[path]}.{connector}")
+                wires += [wire(self._instances, to, source, made) for to, source in pairs]
         return list(dict.fromkeys(wires))
 
     def reached(self, node: Node, unit: Stated | None) -> list[Reached]:
@@ -91,7 +92,7 @@ class Nets:
         if name is None:
             return self._units.get(node)
         fmu = self._instances[name].fmu
-        return fmu.ports[fmu.name_of(node[1])].stated
+        return (fmu.elements(node[1]) or [fmu.ports[fmu.name_of(node[1])]])[0].stated
 
     def _flow(self, start: Node, unit: Stated | None) -> Iterator[Reached]:
         """Yield what a value reaches, through connectors of systems and itself first.
@@ -121,34 +122,50 @@ def _causality(node: Node, instances: dict[str, Instance], names: Names) -> str:
     if name is None:
         return ""
     fmu = instances[name].fmu
+    if array := fmu.elements(node[1]):
+        return array[0].causality
     return fmu.port(fmu.name_of(node[1]), f"connection to {name}").causality
 
 
-def _connections(system: Element, path: tuple[str, ...] = ()) -> Iterator[tuple[Node, Node, Link]]:
-    """The two ends of each connection of a system and of the systems in it, and what it does to values."""
-    elements = {required(each, "name"): each for each in system.iterfind(f"{full('ssd:Elements')}/*")}
-    systems = {name: each for name, each in elements.items() if each.tag == full("ssd:System")}
-    connectors = {(*path, name): _connectors(each) for name, each in systems.items()}
-    connectors[path] = _connectors(system)
-    for connection in system.iterfind(f"{full('ssd:Connections')}/{full('ssd:Connection')}"):
-        ends = []
-        for which in ("start", "end"):
-            owner = connection.get(f"{which}Element") or None  # OMSimulator has an empty name for none
-            node = (path if owner is None else (*path, owner), required(connection, f"{which}Connector"))
-            if owner is not None:
-                _check_known(node, "element", owner, elements)
-            if node[0] in connectors:
-                _check_known(node, "connector of a system", node[1], connectors[node[0]])
-            ends.append(node)
-        transformation = transformed(connection, f"connection {' -> '.join(map(_dotted, ends))}")
-        yield ends[0], ends[1], Link(transformation, suppressed(connection))
-    for name, element in systems.items():
-        yield from _connections(element, (*path, name))
+def _connections(system: Element, passing: Container[Node]) -> Iterator[tuple[Node, Node, Link]]:
+    """The two ends of each connection of a system and of the systems in it, and what it does to values.
+
+    A connector of a reference to a signal dictionary is connected to the entry of that.
+    """
+    for path, owner in systems(system):
+        elements = {required(each, "name"): each for each in owner.iterfind(f"{full('ssd:Elements')}/*")}
+        for connection in owner.iterfind(f"{full('ssd:Connections')}/{full('ssd:Connection')}"):
+            ends = [_end(connection, which, path, owner, elements) for which in ("start", "end")]
+            transformation = transformed(connection, f"connection {' -> '.join(map(_dotted, ends))}")
+            yield ends[0], ends[1], Link(transformation, suppressed(connection))
+        for name, each in elements.items():
+            if each.tag == full("ssd:SignalDictionaryReference"):
+                wanted = required(each, "dictionary")
+                homes = (dictionary(path[:depth], wanted) for depth in range(len(path), -1, -1))
+                home = next((home for home in homes if (home, "") in passing), None)
+                if home is None:
+                    raise LoomfmuError(f"{name}: there is no signal dictionary {shown(wanted)}")
+                for entry in (required(connector, "name") for connector in connectors(each)):
+                    if (home, entry) not in passing:
+                        raise LoomfmuError(f"{name}: {wanted} has no entry {shown(entry)}")
+                    yield ((*path, name), entry), (home, entry), Link(SAME, suppressed=False)
 
 
-def _connectors(system: Element) -> set[str]:
-    listed = system.iterfind(f"{full('ssd:Connectors')}/{full('ssd:Connector')}")
-    return {required(each, "name") for each in listed}
+def _end(
+    connection: Element, which: str, path: tuple[str, ...], system: Element, elements: Mapping[str, Element]
+) -> Node:
+    """An end of a connection in a system. Raises LoomfmuError where there is no such connector."""
+    if connection.get(f"{which}Indices") is not None:
+        raise LoomfmuError(f"{which}Indices = {shown(connection.get(f'{which}Indices'))} is not supported")
+    owner = connection.get(f"{which}Element") or None  # OMSimulator has an empty name for none
+    node = (path if owner is None else (*path, owner), required(connection, f"{which}Connector"))
+    if owner is not None:
+        _check_known(node, "element", owner, elements)
+    element = system if owner is None else elements[owner]
+    if element.tag != full("ssd:Component"):
+        known = [required(each, "name") for each in connectors(element)]
+        _check_known(node, "connector of a system", node[1], known)
+    return node
 
 
 def _check_known(node: Node, kind: str, name: str, known: Collection[str]) -> None:

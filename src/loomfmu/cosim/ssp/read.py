@@ -1,4 +1,4 @@
-"""System packages (SSP 1.0) as scenes: our own, to the last bit, and those of other tools.
+"""System packages (SSP 1.0 and 2.0) as scenes: our own, to the last bit, and those of other tools.
 
 A package is read from its structure: elements, connections, parameter sets. What a structure cannot say,
 such as claims and what is recorded, is in the text of the scene that our own packages carry; another
@@ -16,7 +16,7 @@ from ...declaring.variables import AT_STEP_END
 from ...errors import LoomfmuError, listed, shown, why
 from ...own.declared import PARAMETER_SETS
 from ..importing import fmus
-from ..importing.conversions import SAME, Stated, stated
+from ..importing.conversions import SAME, Stated
 from ..importing.descriptions import plain_names
 from ..importing.fmus import Fmu
 from ..importing.ports import conversion
@@ -24,8 +24,9 @@ from ..scenes.instance_tables import overridden, override, prevailing, state_uni
 from ..scenes.instances import Instance, check_name
 from ..scenes.scene import Scene, assemble
 from ..scenes.settings import DEEPEST, TIMES, toml
-from .connections import Nets, Node
+from .connections import Nets
 from .package import Package
+from .structure import Node, connectors, joining, stated_by, structure, systems
 from .values import Given, apply, bound
 from .xml import FMU, OSP, OURS, SSD_FILE, full, read_units, real, required, transformed
 
@@ -62,7 +63,7 @@ class _Reader:
         self.package = package
         self.notes: list[str] = []
         self.unitless: list[str] = []  # values with a unit for variables without one
-        self.root = package.root(SSD_FILE)
+        self.root = structure(package)
         self.units = read_units(self.root.iterfind(full("ssd:Units")))
 
     def scene(self, overrides: dict[str, Any]) -> Scene:
@@ -76,9 +77,9 @@ class _Reader:
         text = None if annotation is None else toml(annotation.text or "")
         stated = _stated(found, text or {}, overrides)
         instances = {name: self._instance(name, each.element, stated[name]) for name, each in found.items()}
-        connectors = {node: self._unit(each) for node, each in _system_connectors(system).items()}
-        nets = Nets(system, instances, names, connectors)
-        for name, values in self._values(system, found, nets, connectors).items():
+        passing = joining(self.package, self.root, system)
+        nets = Nets(system, instances, names, passing)
+        for name, values in self._values(system, found, nets, passing).items():
             self._set(instances[name], values, ours=text is not None)
         if self.unitless:
             taken = f"values are taken as they are where the variable has no unit: {listed(self.unitless)}"
@@ -122,20 +123,20 @@ class _Reader:
         system: Element,
         found: Mapping[str, _Found],
         nets: Nets,
-        connectors: Mapping[Node, Stated | None],
+        passing: Mapping[Node, Stated | None],
     ) -> dict[str, list[Given]]:
         """The values of each instance in the order they are set: those of outer systems last."""
         values = {name: list(bound(each.element, self.package.root)) for name, each in found.items()}
         dotted = {".".join(each.path): name for name, each in found.items()}
         most = max(name.count(".") for name in dotted) + 1
-        for path, element in reversed(list(_systems(system))):  # the outermost last: it prevails
+        for path, element in reversed(list(systems(system))):  # the outermost last: it prevails
             for given in bound(element, self.package.root):
                 parts = (*path, *given.name.split(".", most))
                 heads = ((".".join(parts[:end]), end) for end in range(len(path) + 1, len(parts)))
                 name, end = next(((dotted[head], end) for head, end in heads if head in dotted), ("", 0))
                 whole = ".".join(parts)
-                node = next((each for each in _nodes(whole) if each in connectors), None)
-                inside = connectors[node] if node else None
+                node = next((each for each in _nodes(whole) if each in passing), None)
+                inside = passing[node] if node else None
                 takers = nets.reached(node, inside or given.unit) if node else []
                 if name:
                     values[name].append(replace(given, name=".".join(parts[end:])))
@@ -172,18 +173,12 @@ class _Reader:
     def _with_units(self, fmu: Fmu, element: Element, name: str) -> Fmu:
         """The units that connectors state, where the FMU itself states none."""
         ports = dict(fmu.ports)
-        for connector in element.iterfind(f"{full('ssd:Connectors')}/{full('ssd:Connector')}"):
-            unit = self._unit(connector)
+        for connector in connectors(element):
+            unit = stated_by(connector, self.units)
             port = ports.get(fmu.name_of(required(connector, "name")))
             if unit and port is not None and port.kind == "Real":
                 ports[port.name] = port.with_unit(unit.name, unit.definition, f"{name}.{port.name}")
         return replace(fmu, ports=ports)
-
-    def _unit(self, connector: Element) -> Stated | None:
-        """The unit that a connector states, if it does."""
-        real = connector.find(full("ssc:Real"))
-        name = "" if real is None else real.get("unit", "")
-        return stated(name, self.units.get(name))
 
     # ---- the rest
 
@@ -219,22 +214,6 @@ def _annotation(parent: Element, kind: str, content: str) -> Element | None:
     return None
 
 
-def _systems(system: Element, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Element]]:
-    """A system and the systems in it, each with the names that lead to it; the outer ones first."""
-    yield path, system
-    for element in system.iterfind(f"{full('ssd:Elements')}/{full('ssd:System')}"):
-        yield from _systems(element, (*path, required(element, "name")))
-
-
-def _system_connectors(system: Element) -> dict[Node, Element]:
-    """The connectors of a system and of the systems in it."""
-    return {
-        (path, required(each, "name")): each
-        for path, element in _systems(system)
-        for each in element.iterfind(f"{full('ssd:Connectors')}/{full('ssd:Connector')}")
-    }
-
-
 def _nodes(name: str) -> Iterator[Node]:
     """The connectors of systems that a dotted name may mean."""
     parts = name.split(".")
@@ -256,9 +235,9 @@ def _components(system: Element, path: tuple[str, ...] = ()) -> Iterator[_Found]
             yield _Found(here, element)
         elif element.tag == full("ssd:System"):
             yield from _components(element, here)
-        else:
+        elif element.tag != full("ssd:SignalDictionaryReference"):
             kind = element.tag.rpartition("}")[2]
-            raise LoomfmuError(f"{name} is a {kind}: only FMUs and systems are supported")
+            raise LoomfmuError(f"{name} is a {kind}: only FMUs, systems and dictionaries are supported")
 
 
 def _names(found: list[_Found]) -> dict[str, _Found]:

@@ -91,6 +91,12 @@ def apply(instance: Instance, given: Given, unitless: list[str]) -> str:
     that the variable cannot have.
     """
     where = f"{instance.name}.{given.name}"
+    if array := instance.fmu.elements(given.name):
+        texts = given.text.split()
+        if len(texts) != len(array):
+            raise LoomfmuError(f"{where} has {len(array)} elements, not {len(texts)}")
+        values = [replace(given, name=port.own, text=text) for port, text in zip(array, texts, strict=True)]
+        return next(filter(None, [apply(instance, each, unitless) for each in values]), "")
     port = instance.fmu.ports.get(instance.fmu.name_of(given.name))
     if port is None or given.kind in ("String", "Binary"):
         text = given.kind in ("String", "Binary")

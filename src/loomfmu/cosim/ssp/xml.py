@@ -11,6 +11,7 @@ from ..importing.conversions import BASES, SAME, Definition, Linear
 SSD_FILE = "SystemStructure.ssd"
 PARAMETER_SET = "application/x-ssp-parameter-set"
 FMU = "application/x-fmu-sharedlibrary"
+SSP = "application/x-ssp-package"
 OSP = "com.opensimulationplatform"  # annotation of the Open Simulation Platform: the step
 OMS = "org.openmodelica"  # annotation of OMSimulator: its master and its step
 OURS = "org.pypi.loomfmu"  # our own annotation: the text of the scene
@@ -18,6 +19,7 @@ NAMESPACES = {
     "ssd": "http://ssp-standard.org/SSP1/SystemStructureDescription",
     "ssc": SSC,
     "ssv": SSV,
+    "ssb": "http://ssp-standard.org/SSP1/SystemStructureSignalDictionary",
     "ssm": "http://ssp-standard.org/SSP1/SystemStructureParameterMapping",
     "osp": "http://opensimulationplatform.com/SSP/OSPAnnotations",
     "oms": "https://raw.githubusercontent.com/OpenModelica/OMSimulator/master/schema/oms.xsd",
