@@ -22,6 +22,7 @@ from loomfmu.cosim.importing.ports import Port
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.graph import drive
 from loomfmu.machines import parameters
+from loomfmu.sweeps.varied import varied
 
 # ---- they drive our mechanisms
 
@@ -59,6 +60,23 @@ def test_the_tolerance_that_an_fmu_states_is_passed_on_to_it(
     expected = pytest.raises(LoomfmuError, match=said) if said else nullcontext()
     with expected:
         ran(place, MOTOR.replace("Motor.fmu", "Strict.fmu") + f"isolated = {isolated}\n{WEFT}", tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ("0.05", ""),
+        ("0.5", "motor: .*fmi2SetupExperiment"),
+        ("0", "motor.tolerance = 0 must be a finite number above 0"),
+        ('"fine"', "motor.tolerance: 'fine' is not a quantity"),
+    ],
+)
+def test_a_scene_sets_the_tolerance_of_an_fmu(place: Path, tmp_path: Path, given: str, said: str) -> None:
+    stated = '<DefaultExperiment tolerance="0.5"/><ModelVariables>'
+    text = description2().replace("<ModelVariables>", stated)
+    packed(place / "Strict.fmu", text, library("fmi2.c"), "Motor")  # it refuses tolerances above 0.1
+    with pytest.raises(LoomfmuError, match=said) if said else nullcontext():
+        ran(place, MOTOR.replace("Motor.fmu", "Strict.fmu") + f"tolerance = {given}\n{WEFT}", tmp_path)
 
 
 def test_a_boolean_input_of_fmi_3_is_driven(place: Path, tmp_path: Path) -> None:
@@ -214,6 +232,15 @@ def test_arrays_are_set_wired_and_recorded(tmp_path: Path, isolated: bool) -> No
 def test_arrays_of_another_size_are_refused(tmp_path: Path, text: str, said: str) -> None:
     motor3(tmp_path, description=ARRAYS)
     assert said in refused(tmp_path, TABLE + text)
+
+
+def test_a_sweep_varies_tolerances_and_elements_of_arrays(tmp_path: Path) -> None:
+    motor3(tmp_path, description=ARRAYS)
+    scene = scenes.parse(TABLE, directory=tmp_path)
+    assert varied(scene, "one.u_1_2").read("3") == 3.0
+    assert varied(scene, "one.tolerance").needs_scene
+    with pytest.raises(LoomfmuError, match=r"^one\.u is an array; vary one of its .*, such as one\.u_1_1"):
+        varied(scene, "one.u")
 
 
 def test_arrays_are_not_more_than_a_trace_can_hold(tmp_path: Path) -> None:

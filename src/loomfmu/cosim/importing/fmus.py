@@ -1,6 +1,7 @@
 """FMUs: what is known of one, and its file, built and unpacked when it is first needed."""
 
 import hashlib
+import math
 import os
 import re
 import zipfile
@@ -12,6 +13,7 @@ from typing import Any
 
 import fmpy
 
+from ... import units
 from ...cache.entries import UNPACKED, folder
 from ...components import COMPONENTS
 from ...components.shaft_driven import FOLLOWED
@@ -236,6 +238,16 @@ class Fmu:
         """This FMU with locals that are recorded as its outputs are."""
         added = {name: replace(self.ports[name], causality="output", inner=True) for name in names}
         return replace(self, ports=self.ports | added)
+
+    def with_tolerance(self, given: Any, where: str) -> "Fmu":
+        """This FMU with another relative tolerance for its solver. Raises LoomfmuError."""
+        try:
+            tolerance = units.parse(given, "1")
+        except units.UnitError as error:
+            raise LoomfmuError(f"{where}: {error}") from None
+        if not 0.0 < tolerance < math.inf:
+            raise LoomfmuError(f"{where} = {shown(given)} must be a finite number above 0")
+        return replace(self, tolerance=tolerance)
 
     def as_shaft(self) -> "Fmu":
         """This FMU in the place of the main shaft: it outputs the angle, and its other outputs are rates."""

@@ -15,6 +15,7 @@ from ..importing.fmus import Fmu, Port, Value
 from ..standard import standard
 from .settings import KEYS, truth
 
+TOLERANCE = "tolerance"  # of the solver in a third-party FMU
 NAME = re.compile("[A-Za-z][A-Za-z0-9_]*")
 TAKEN = ("time", "shaft_angle")  # what a trace has beside its instances
 TYPES: dict[str, Callable[[Value], Value]] = {"Real": float, "Integer": int, "Boolean": bool}
@@ -66,9 +67,12 @@ class Instance:
         if key == ISOLATED and name not in self.fmu.ports:
             self.isolated = truth(given, f"{self.name}.{key}")
             return
+        if key == TOLERANCE and name not in self.fmu.ports and not self.fmu.ours:
+            self.fmu = self.fmu.with_tolerance(given, f"{self.name}.{key}")
+            return
         if name not in self.fmu.ports:
             settable = {port.name: port.description for port in self.fmu.ports.values() if _can_be_set(port)}
-            extra = PARAMETER_SETS if self.fmu.built else FILES
+            extra = PARAMETER_SETS if self.fmu.built else (*FILES, TOLERANCE)
             hint = suggestion(key, [*settable, *extra, ISOLATED], settable)
             if key in KEYS:
                 hint = f": {key} belongs to the scene, write it above the first [table]"
