@@ -141,6 +141,16 @@ def test_a_signal_dictionary_joins_what_is_connected_to_an_entry_of_it(tmp_path:
         ran(packed(tmp_path / "wrong.ssp", wrong, files))
 
 
+def test_an_input_that_is_connected_to_another_one_takes_the_same_value(tmp_path: Path) -> None:
+    wires = connection("a.flange.w", "b.load.tau"), connection("b.load.tau", "c.load.tau")
+    wires = tuple(
+        each.replace("<ssd:Connection ", '<ssd:Connection suppressUnitConversion="true" ') for each in wires
+    )
+    system = in_system("".join(map(MOTOR.format, "abc")), *wires)
+    found = ran(packed(tmp_path / "a.ssp", system, {"Motor.fmu": motor2(tmp_path).read_bytes()})).scene.wires
+    assert [str(each) for each in found] == [f"a.flange_w -> {name}.load_tau" for name in "bc"]
+
+
 def test_arrays_are_set_and_connected(tmp_path: Path) -> None:
     motor3(tmp_path, description=ARRAYS)
     one = MOTOR.replace("/>", ">{}</ssd:Component>").format("one", values(u='Float64 value="1 2 3 4"'))

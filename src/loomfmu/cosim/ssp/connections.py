@@ -103,8 +103,8 @@ class Nets:
         waiting = [found[start]]
         for here in waiting:
             yield here
-            if here.node != start and self._causality[here.node]:
-                continue  # a component passes nothing on
+            if here.node != start and self._causality[here.node] == "output":
+                continue  # it gives a value of its own
             for node, link in self._links[here.node]:
                 if node in found:
                     continue
