@@ -85,7 +85,7 @@ def joining(package: Package, root: Element, system: Element) -> dict[Node, Stat
 
 
 def dictionary(path: tuple[str, ...], name: str) -> tuple[str, ...]:
-    """Where the entries of a dictionary of a system are, as nodes: no element has such a name."""
+    """Return the path of the entries of a dictionary of a system, a name that no element has."""
     return (*path, f"\0{name}")
 
 
