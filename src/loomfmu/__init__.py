@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from .studies.fitting.fit import fit as fit
     from .studies.gradient import Gradient as Gradient
     from .studies.gradient import gradient as gradient
-    from .studies.limits.boundary import limit as limit
+    from .studies.limits.limits import limit as limit
     from .studies.limits.results import Boundary as Boundary
     from .studies.limits.results import Limits as Limits
     from .studies.optimizing.optimize import optimize as optimize
@@ -67,7 +67,7 @@ _HOMES = {
     "report": "",
     "gradient": "studies.gradient",
     "fit": "studies.fitting.fit",
-    "limit": "studies.limits.boundary",
+    "limit": "studies.limits.limits",
     "optimize": "studies.optimizing.optimize",
     "run": "cosim.run",
     "sweep": "sweeps.run",

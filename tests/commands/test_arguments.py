@@ -16,6 +16,10 @@ DEMO: Any = SIMS / "wl680_3600.toml"
 SHORT = {"revolutions": 2, "steps_per_revolution": 90, "grid": "uniform"}
 
 
+def short() -> loomfmu.Evaluation:
+    return evaluate(DEMO, set=SHORT)
+
+
 @pytest.mark.parametrize(
     ("call", "said"),
     [
@@ -40,13 +44,24 @@ SHORT = {"revolutions": 2, "steps_per_revolution": 90, "grid": "uniform"}
         (lambda: sweep(DEMO, processes=0), "processes = 0 must be 1 or more"),
         (lambda: sweep(DEMO, scheduler=3), "scheduler = 3 is not an address such as"),
         (lambda: sweep(SIMS / "sweeps" / "safe_speed.toml", output=3), "output = 3 is not a path"),
+        (lambda: run(Path(DEMO).read_text()), ("scene = 'title = ", 'scene = "title = ')),
+        (lambda: judge(short(), kind="lowest_margin", bound=0), "trace = <Evaluation wl680_3600: all"),
+        (lambda: judge("v.h5", kind="lowest_margin", bound=0), "trace = 'v.h5' is not a trace, such as"),
+        (
+            lambda: judge(short().trace, kind="above", signal=None, bound=0),
+            "claim 'above': signal = None is not a name in quotes",
+        ),
+        (lambda: short().trace[3], "wl680_3600: signal 3 is not recorded"),
+        (lambda: short().trace[["a"]], "wl680_3600: signal ['a'] is not recorded"),
     ],
 )
-def test_what_is_of_the_wrong_type_is_refused_in_one_line(call: Callable[[], Any], said: str) -> None:
+def test_what_is_of_the_wrong_type_is_refused_in_one_line(
+    call: Callable[[], Any], said: str | tuple[str, ...]
+) -> None:
     with pytest.raises(LoomfmuError) as raised:
         call()
     assert str(raised.value).startswith(said)
-    assert "\n" not in str(raised.value) and len(str(raised.value)) < 250
+    assert "\n" not in str(raised.value) and len(str(raised.value)) < 350
 
 
 def test_a_result_is_shown_in_a_few_lines() -> None:
@@ -57,32 +72,6 @@ def test_a_result_is_shown_in_a_few_lines() -> None:
     assert repr(evaluate(DEMO, set=SHORT)) == "<Evaluation wl680_3600: all claims hold>"
     assert repr(found.scene).startswith("<Scene wl680_3600: ")
     assert repr(found.trace).startswith("<Recording wl680_3600: ")
-
-
-@pytest.mark.parametrize(
-    ("call", "said"),
-    [
-        (lambda found: judge(found, kind="lowest_margin", bound=0), "trace = <Evaluation wl680_3600: all"),
-        (
-            lambda found: judge("v.h5", kind="lowest_margin", bound=0),
-            "trace = 'v.h5' is not a trace, such as",
-        ),
-        (
-            lambda found: judge(found.trace, kind="above", signal=None, bound=0),
-            "claim 'above': signal = None is not a name in quotes",
-        ),
-        (lambda found: found.trace[3], "wl680_3600: signal 3 is not recorded"),
-        (lambda found: found.trace[["a"]], "wl680_3600: signal ['a'] is not recorded"),
-        (lambda _found: run(Path(DEMO).read_text()), "scene = 'title = "),
-    ],
-)
-def test_what_cannot_be_judged_or_read_is_refused_in_one_line(call: Callable[[Any], Any], said: str) -> None:
-    with pytest.raises(LoomfmuError) as raised:
-        call(evaluate(DEMO, set=SHORT))
-    assert str(raised.value).startswith(said) or str(raised.value).startswith(
-        said.replace("'title", '"title')
-    )
-    assert "\n" not in str(raised.value)
 
 
 def test_the_package_lists_its_public_names() -> None:

@@ -149,6 +149,8 @@ def test_options_of_one_kind_of_export_are_refused_for_the_other(capsys: pytest.
     assert main(["export", path, "--ssp", "loom.ssp", "--fmi", "3"]) == 2
     assert "--fmi is for --fmu: a system package holds FMUs of FMI 2.0" in capsys.readouterr().err
     assert not list(Path().glob("loom.*"))
+    with pytest.raises(SystemExit, match="2"):
+        main(["export", path])  # one of the two must be given
 
 
 def test_a_value_is_set_once_and_a_trace_is_called_what_it_is(capsys: pytest.CaptureFixture[str]) -> None:

@@ -161,19 +161,6 @@ def test_torques_that_are_a_step_late_do_not_balance():
     assert balance.worst > 1e-4
 
 
-def test_the_work_is_the_integral_of_torque_and_velocity():
-    names = ("load_torque", "velocity", "load_work", "motor_power", "motor_work")
-    trace = loomfmu.evaluate(scene(LOOM, steps=1440), values=[f"shaft.{name}" for name in names]).trace
-    size = trace.time[1]
-    for power, work in (
-        (trace["shaft.load_torque"] * trace["shaft.velocity"], trace["shaft.load_work"]),
-        (trace["shaft.motor_power"], trace["shaft.motor_work"]),
-    ):
-        simpson = size / 3.0 * (power[:-2:2] + 4.0 * power[1:-1:2] + power[2::2]).sum()
-        # Simpson's rule over samples 0.25 deg apart, across the kinks of the dobby's law
-        assert work[-1] == pytest.approx(simpson, abs=1e-5)
-
-
 def test_flavours_run_a_driven_loom_to_the_same_bit():
     driven = scene(LOOM, steps=90)
     values = ["shaft.velocity", "shaft.motor_work", "shaft.load_work", "heald_1.shaft_torque"]

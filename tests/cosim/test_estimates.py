@@ -340,15 +340,6 @@ def test_a_belt_that_buckles_for_less_than_a_step_is_deflected() -> None:
         assert abs(found.worst - 3.744e-3) <= found.error + 5e-7  # digits of the value
 
 
-def test_no_blow_decides_nothing_below_the_least_speed_of_one() -> None:
-    """0 blows held, with an error of 1e-12, where finer steps count one of 1.33 mm/s."""
-    keys = 'weave = "1100/0110/0011/1001"\nwarps = true\nplay = true\n'
-    blows = claim("heald_blows", play="play_1", at_most="0.001 m/s")
-    law = {"dobby__law": "spline_cam", "dobby__slow_point": "170 deg", "shaft__speed": "407 rev/min"}
-    found = of_loom(360, keys, blows, **law)[1]
-    assert found.word == "undecided" or found.worst > 0.001
-
-
 def test_coarser_runs_are_coarser_however_many_rows_a_table_has() -> None:
     """353 rows were points of all runs, which hardly differed: errors were a third of what they should be."""
     rows = [[row / 353, f"{100 + row % 7} cN"] for row in range(354)]
@@ -534,82 +525,45 @@ def test_a_table_that_its_own_rate_contradicts_decides_nothing(
     assert contradicted in found.note and ("is not the rate" in found.note) == bool(contradicted)
 
 
+KINKED = Path(__file__).with_name("kinked.py")
+CUT = {f"belt__{each}": False for each in HEAD}
+
+
 @pytest.mark.parametrize(
-    ("cut", "inputs", "why"),
+    ("wired", "inputs", "why"),
     [
-        ("acceleration", "", "belt.acceleration is constant, but belt.velocity is wired"),
-        ("acceleration", [[0, 0]], "belt.acceleration is a table, but belt.velocity is wired; wire both"),
-        ("travel", [[0, 0], [1, "1 m"]], "belt.velocity is wired, but belt.travel a table; give both"),
+        ({"belt__acceleration": False}, {}, "belt.acceleration is constant, but belt.velocity is wired"),
+        (
+            *({"belt__acceleration": False}, {"belt__acceleration": [[0, 0]]}),
+            "belt.acceleration is a table, but belt.velocity is wired; wire both",
+        ),
+        (
+            *({"belt__travel": False}, {"belt__travel": [[0, 0], [1, "1 m"]]}),
+            "belt.velocity is wired, but belt.travel a table; give both",
+        ),
+        (  # a mechanism of one's own that says of neither what it is
+            *(CUT | {"belt__travel": "m.value", "belt__velocity": "m.velocity"}, {}),
+            'is not the rate of m.value; declare m.value with rate="velocity" if it is',
+        ),
+        (
+            *({"weft__shaft_angle": "second.angle"}, {}),
+            "weft.shaft_velocity is wired to shaft.velocity, which is not the rate of second.angle",
+        ),
+        ({f"weft__shaft_{each}": f"second.{each}" for each in MOTION}, {}, ""),
     ],
 )
-def test_a_rate_that_comes_from_elsewhere_decides_nothing(cut: str, inputs: Any, why: str) -> None:
-    """Without the wire of its acceleration the belt was never at risk, or bent by half a metre."""
-    sink = f"belt__{cut}"
-    given = "[wires]\n" + wires(**{sink: False}) + ("[inputs]\n" + wires(**{sink: inputs}) if inputs else "")
-    (found,) = of_loom(90, given, bound=0.99)
-    assert found.word == "undecided" and why in found.note
-
-
-TWO_SHAFTS = """
-[second]
-component = "MainShaft"
-speed = "600 rev/min"
-[weft]
-machine = "WL680-3600"
-"""
-
-
-@pytest.mark.parametrize(("together", "grid"), [(False, "uniform"), (True, "uniform"), (True, "windows")])
-def test_an_angle_and_its_velocity_come_from_one_shaft(together: bool, grid: str) -> None:
-    """With the velocity of a shaft at half the speed, 84.2 m/s were judged to be 42.1."""
-    wired = wires(**{f"weft__shaft_{each}": f"second.{each}" for each in MOTION[: 3 if together else 1]})
-    text = TWO_SHAFTS + "[wires]\n" + wired + claim("below", signal="weft.velocity", bound=50.0)
-    (found,) = verdicts(text, revolutions=2, shaft__speed="300 rev/min", grid=grid)
-    assert found.word == ("FAILS" if together else "undecided")
-    wrong = "weft.shaft_velocity is wired to shaft.velocity, which is not the rate of second.angle"
-    assert (wrong in found.note) != together
-
-
-HALF = """
-from dataclasses import dataclass
-from typing import ClassVar
-from loomfmu.mechanism import NOTHING, TOO_FAR, Problem, ShaftDriven, output, too_far
-
-@dataclass(slots=True)
-class Half(ShaftDriven):
-    \"\"\"An angle, and half of its velocity.\"\"\"
-    problems: ClassVar[tuple[Problem, ...]] = (TOO_FAR,)
-    keeps: ClassVar[str] = NOTHING
-    longest_turn: ClassVar[float] = 0.5
-    angle: float = output("rad", "angle")
-    velocity: float = output("rad/s", "half of its rate")
-    acceleration: float = output("rad/s2", "none")
-
-    def initialize(self, time: float) -> int:
-        \"\"\"Begin.\"\"\"
-        return self.step(time, 0.0)
-
-    def step(self, time: float, step_size: float) -> int:
-        \"\"\"Go on.\"\"\"
-        angle, speed, _acceleration = self.shaft(time, step_size)
-        self.angle = angle
-        self.velocity = 0.5 * speed
-        return 1 if too_far(angle) else 0
-"""
-
-
-def test_an_output_that_is_not_said_to_be_a_rate_is_none(tmp_path: Path) -> None:
-    """Half of the velocity, of one's own mechanism that says of neither what it is: 42.1 m/s were 21.1."""
-    (tmp_path / "half.py").write_text(HALF)
-    text = table("half", component="half.py") + table("weft", machine="WL680-3600")
-    wired = "[wires]\n" + wires(**{f"weft__shaft_{each}": f"half.{each}" for each in MOTION})
-    bound = claim("below", signal="weft.velocity", bound=25.0)
-    (found,) = verdicts(text, wired, bound, directory=tmp_path, revolutions=2, shaft__speed="300 rev/min")
-    assert found.word == "undecided"
-    assert 'is not the rate of half.angle; declare half.angle with rate="velocity" if it is' in found.note
-
-
-KINKED = Path(__file__).with_name("kinked.py")
+@pytest.mark.parametrize("grid", ["uniform", "windows"])
+def test_a_rate_that_comes_from_elsewhere_decides_nothing(
+    wired: Any, inputs: Any, why: str, grid: str
+) -> None:
+    """Without the wire of its acceleration the belt was never at risk, or bent by half a metre; with the
+    velocity of a shaft at half the speed, 84.2 m/s were judged to be 42.1."""
+    instances = table("m", component=str(KINKED)) + table(
+        "second", component="MainShaft", speed="600 rev/min"
+    )
+    given = "[wires]\n" + wires(**wired) + ("[inputs]\n" + wires(**inputs) if inputs else "")
+    (found,) = of_loom(90, instances, given, bound=0.99, grid=grid)
+    assert why in found.note and found.word == ("undecided" if why else "FAILS")
 
 
 @pytest.mark.parametrize("steps", [320, 1440])

@@ -106,14 +106,6 @@ def test_it_does_so_in_fmi_3(tmp_path: Path) -> None:
     same(one.instance().along(scene.steps, scene.step_size), traced(scene, tmp_path))
 
 
-@pytest.mark.few(1)
-@pytest.mark.parametrize("every", [7, 1440])
-def test_a_communication_step_may_hold_many_steps(demo: Whole, demo_run: Signals, every: int) -> None:
-    scene = loaded(DEMO)
-    steps = scene.steps - scene.steps % every
-    same(demo.instance().along(steps, scene.step_size, every), demo_run, every)
-
-
 def test_a_step_that_ends_off_the_grid_is_made_to_its_end(demo: Whole) -> None:
     """Ends of communication steps are further points of the grid, and steps of any length agree."""
     size = loaded(DEMO).step_size
@@ -184,13 +176,6 @@ def test_a_parameter_has_the_effect_of_set(
     found = instance.along(scene.steps, scene.step_size)
     instance.free()
     same(found, traced(scene, tmp_path_factory.mktemp("set")))
-
-
-@pytest.mark.slow
-def test_what_turns_unevenly_can_be_chosen_in_the_fmu(tmp_path: Path, demo: Whole) -> None:
-    scene = loaded(DEMO, shaft__ramp_duration=0.1, shaft__ripple_amplitude=0.02)
-    instance = demo.instance(shaft__ramp_duration=0.1, shaft__ripple_amplitude=0.02)
-    same(instance.along(scene.steps, scene.step_size), traced(scene, tmp_path))
 
 
 def test_a_state_is_saved_restored_and_serialized(demo: Whole) -> None:

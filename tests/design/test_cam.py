@@ -8,14 +8,11 @@ from math import cos, pi, radians, sin, sqrt
 
 import numpy as np
 import pytest
-from scipy.interpolate import CubicSpline
 
 from loomfmu.design.cam import design_cam, lift_law, published_path, sampled_law, spline_law
 from loomfmu.design.cam_export import cutter_moves, gcode, write_csv, write_dxf
 from loomfmu.errors import LoomfmuError
 from loomfmu.machines import table
-from loomfmu.physics.heald import lift_fraction
-from loomfmu.physics.rotor_laws.rotor import SLOPED_SINE, rotor_law
 
 ROUND, OFF = 0.1, 0.015  # m: a round cam and how far off its axis it turns
 
@@ -72,21 +69,6 @@ def test_published_cam():
     assert 1e3 * cam.curvature_radius.min() == pytest.approx(94.3, abs=0.05)
 
 
-def test_pressure_angle_is_the_slope_of_the_path():
-    cam = design_cam(points=2880)
-    radius, direction = np.hypot(*cam.path.T), np.unwrap(np.arctan2(cam.path[:, 1], cam.path[:, 0]))
-    slope = CubicSpline(direction, radius)(direction, 1)
-    # a spline through points 0.125 deg apart: the third derivative of the law jumps at its control points
-    assert np.tan(cam.pressure_angle) == pytest.approx(slope / radius, abs=1e-5)
-
-
-@pytest.mark.parametrize("law_on_roller", [False, True])
-def test_offset_keeps_the_rollers_radius(law_on_roller):
-    cam = design_cam(law_on_roller=law_on_roller)
-    # chords of 0.25 deg lie below the curve by 107 mm (0.0022)^2 = 0.26 um
-    assert distances(cam.path[::7], cam.profile) == pytest.approx(np.full(206, 0.019), abs=5e-7)
-
-
 def test_radial_addition_of_appendix_2_cuts_into_the_flanks():
     cam = design_cam()
     excess = cam.radial_excess()
@@ -119,25 +101,6 @@ def test_law_of_the_spline_has_its_derivatives():
     assert (after[0] - before[0]) / (2.0 * h) == pytest.approx(here[1], abs=1e-8)
     assert (after[1] - before[1]) / (2.0 * h) == pytest.approx(here[2], abs=1e-4)  # across its knots
     assert law(np.linspace(0.0, 2.0 * pi, 100001))[0].max() == pytest.approx(1.0, abs=1e-9)
-
-
-def test_any_rotor_law_makes_a_cam():
-    def lift(angle):  # two picks in a turn of the cam
-        turns, x = divmod(2.0 * angle, 2.0 * pi)
-        rotor, _first, _second = rotor_law(SLOPED_SINE, x, 0.5)
-        return lift_fraction(2.0 * pi * turns + rotor, 0.0, 0.0)[0]
-
-    law = lift_law(lift)
-    for angle in (0.3, 1.5, 2.9, 4.0, 6.0):
-        share, slope, _bend = (float(value) for value in law(np.array(angle)))
-        rotor, first, _second = rotor_law(SLOPED_SINE, 2.0 * angle % (2.0 * pi), 0.5)
-        rotor += 2.0 * pi * (2.0 * angle // (2.0 * pi))
-        exact = lift_fraction(rotor, 2.0 * first, 0.0)
-        # the rotor's third derivative jumps: h^3 times it for the lift, h^2 for the slope, h = 2 pi / 720
-        assert share == pytest.approx(exact[0], abs=1e-7)
-        assert slope == pytest.approx(exact[1], abs=1e-5)
-    cam = design_cam(law)
-    assert 1e3 * np.ptp(np.hypot(*cam.profile.T)) == pytest.approx(23.0, abs=1e-9)  # both ends on the grid
 
 
 @pytest.mark.parametrize(
@@ -321,23 +284,6 @@ def test_program_is_laid_out_as_the_published_one():
 
 
 # The published program
-
-
-def test_published_program_is_of_another_cam():
-    radii = 1e3 * np.hypot(*published_path().T) - 19.0
-    assert np.ptp(radii) == pytest.approx(28.01, abs=5e-3)  # where Appendix 2 has 23
-    assert (radii.min(), radii.max()) == pytest.approx((81.66, 109.67), abs=5e-3)  # and 84 and 107
-    # nor is it the published law with another lift: turned and scaled as fits best it is 1.5 mm out
-    path = published_path()
-    angle = -np.arctan2(path[:, 1], path[:, 0])  # it runs clockwise
-    law = spline_law()
-    misses = []
-    for turned in np.radians(np.arange(0.0, 360.0, 0.5)):
-        share = law((angle + turned) % (2.0 * pi))[0]
-        terms = np.column_stack([np.ones_like(share), share])
-        fitted = np.linalg.lstsq(terms, radii, rcond=None)[0]
-        misses.append(abs(terms @ fitted - radii).max())
-    assert min(misses) == pytest.approx(1.5, abs=0.05)
 
 
 def test_arcs_of_the_published_program_join():

@@ -6,10 +6,6 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from mpmath import cos as mp_cos
-from mpmath import findroot, mpf, workdps
-from mpmath import matrix as mp_matrix
-from mpmath import sin as mp_sin
 
 from loomfmu.components import ReedBeatUp
 from loomfmu.design.guidance import beat_up_linkage, guided_joint
@@ -70,29 +66,6 @@ def test_two_places_and_a_pressure_angle_give_the_published_machine():
     found = guided_joint([(0.490, height), (0.330, height)], [0.0, tilts[1] - tilts[0]], pressure)
     assert (found.arm, found.rod) == pytest.approx((arm, rod), rel=1e-12)  # rounding over a turn of 0.04
     assert degrees(found.swing) == pytest.approx(13.610, abs=1e-9)
-
-
-def test_three_places_to_fifty_digits():
-    # the joint as the root of the distances themselves, without the linear form of (4)
-    points, turns = [(0.49, 0.67), (0.42, 0.66), (0.33, 0.68)], [0.0, 0.12, 0.31]
-    with workdps(50):
-
-        def distances(x, y):
-            found = []
-            for (px, py), turn in zip(points, turns, strict=True):
-                c, s, dx, dy = (
-                    mp_cos(mpf(turn)),
-                    mp_sin(mpf(turn)),
-                    x - mpf(points[0][0]),
-                    y - mpf(points[0][1]),
-                )
-                found.append((c * dx - s * dy + mpf(px)) ** 2 + (s * dx + c * dy + mpf(py)) ** 2)
-            return [found[1] - found[0], found[2] - found[0]]
-
-        guess = guided_joint(points, turns)
-        exact = findroot(distances, (guess.x + 0.01, guess.y - 0.01))
-        assert isinstance(exact, mp_matrix)
-    assert (guess.x, guess.y) == pytest.approx([float(each) for each in exact], rel=1e-12)
 
 
 def test_places_that_no_joint_meets_are_met_as_well_as_can_be():

@@ -1,6 +1,6 @@
 """Dimensions of a reed's linkage: published ones, and that they do what they are made for."""
 
-from math import atan2, degrees, fabs, hypot, pi, radians
+from math import atan2, hypot, pi, radians
 
 import pytest
 from hypothesis import assume, given
@@ -17,57 +17,6 @@ SLOPE = 0.1154
 angle = st.floats(-7.0, 7.0)
 length = st.floats(0.05, 1.0)
 swing = st.floats(0.05, 1.5)
-
-
-def test_published_crank_length():
-    crank, _coupler, _frame, _smallest = crank_rocker_without_quick_return(ROCKER, SWING, radians(15))
-    # printed 65.168 mm; the swing is printed to 0.001 deg, half of that is 2.4 um
-    assert crank == pytest.approx(65.168e-3, abs=2.5e-6)
-
-
-@pytest.mark.parametrize(("frame_angle", "smallest"), [(8.906, 40.0), (29.354, 76.0)])
-def test_published_smallest_transmission_angles(frame_angle, smallest):
-    *_lengths, found = crank_rocker_without_quick_return(ROCKER, SWING, radians(frame_angle))
-    # the source's pairs take a swing of 13.622 deg (next test): 0.0009 of sin(psi/2), or 0.06 deg at 40 deg
-    assert degrees(found) == pytest.approx(smallest, abs=0.07)
-
-
-@pytest.mark.parametrize(("frame_angle", "smallest"), [(8.906, 40.0), (29.354, 76.0)])
-def test_erratum_the_printed_frame_angles_belong_to_another_swing(frame_angle, smallest):
-    # printed to 0.001 deg
-    assert degrees(frame_angle_for(radians(13.622), radians(smallest))) == pytest.approx(
-        frame_angle, abs=1e-3
-    )
-    assert fabs(degrees(frame_angle_for(SWING, radians(smallest))) - frame_angle) > 5e-3
-
-
-def test_published_limit_of_the_transmission_angle():
-    # at b = 90 deg it would be 90 deg - psi / 2
-    *_lengths, found = crank_rocker_without_quick_return(ROCKER, SWING, pi / 2)
-    assert degrees(found) == pytest.approx(83.195, abs=5e-4)  # printed to 0.001 deg
-
-
-@pytest.mark.parametrize("frame_angle", range(9, 31))
-def test_published_kinds_of_pitman(frame_angle):
-    # coupler over crank: short up to 19 deg (below 3), medium from 20 to 30 deg (3 to 6)
-    crank, coupler, _frame, _smallest = crank_rocker_without_quick_return(ROCKER, SWING, radians(frame_angle))
-    assert (coupler / crank < 3) == (frame_angle <= 19)
-    assert coupler / crank < 6
-
-
-@pytest.mark.parametrize("frame_angle", [9.0, 15.0, 29.0])
-def test_published_line_of_crank_centres(frame_angle):
-    x, y = crank_place(ROCKER, SWING, SLOPE, radians(frame_angle))
-    # printed y = 0.1154 x + 549.75 mm
-    assert 1e3 * (y - SLOPE * x) == pytest.approx(549.75, abs=5e-3)
-
-
-@pytest.mark.parametrize(
-    ("pressure", "expected"), [(1.235, (676.5, 487.5, 687.0)), (-1.235, (679.8, 487.5, 669.3))]
-)
-def test_dyad_for_the_published_limits(pressure, expected):
-    arm, rod, height = reed_dyad(0.490, 0.330, SWING, SLOPE, radians(pressure))
-    assert [round(1e3 * value, 1) for value in (arm, rod, height)] == list(expected)
 
 
 @given(swing, st.floats(0.05, 0.95), length)

@@ -1,12 +1,12 @@
 """Cam with a roller on a rocker: a round cam, a radial follower as a limit, exact curves, refusals."""
 
-from math import cos, hypot, pi, radians, sin
+from math import cos, pi, radians, sin
 
 import numpy as np
 import pytest
 from reference import MP
 
-from loomfmu.design.cam import design_cam, lift_law, spline_law
+from loomfmu.design.cam import lift_law, spline_law
 from loomfmu.design.cam_export import gcode, write_csv
 from loomfmu.design.rocker_cam import design_rocker_cam
 from loomfmu.errors import LoomfmuError
@@ -57,22 +57,6 @@ def test_round_cam_is_round(trailing):
         assert cos(cam.pressure_angle[k]) == pytest.approx(between, abs=1e-7)
 
 
-@pytest.mark.parametrize("trailing", [True, False])
-def test_a_long_arm_is_a_radial_follower(trailing):
-    low, high, arm = 0.103, 0.126, 9.9
-    middle = 0.5 * (low + high)
-    apart = hypot(arm, middle)  # the arm stands square to the radial line in the middle of the lift
-    start = 2.0 * np.arcsin(0.5 * np.sqrt((low**2 - (apart - arm) ** 2) / (apart * arm)))
-    end = 2.0 * np.arcsin(0.5 * np.sqrt((high**2 - (apart - arm) ** 2) / (apart * arm)))
-    cam = design_rocker_cam(distance=apart, arm=arm, lowest_angle=start, swing=end - start, trailing=trailing)
-    radial = design_cam(lowest_radius=low, highest_radius=high, law_on_roller=True)
-    # the roller leaves the radial line by the lift squared over the arm, 7e-6 m, the law by 1e-3 of the lift
-    radii, expected = (np.hypot(*of.path.T) for of in (cam, radial))
-    assert radii == pytest.approx(expected, abs=2e-5)
-    assert cam.pressure_angle == pytest.approx(radial.pressure_angle, abs=5e-3)
-    assert 1.0 / cam.curvature_radius == pytest.approx(1.0 / radial.curvature_radius, rel=2e-2, abs=0.05)
-
-
 @both
 def test_curves_to_fifty_digits(drive):
     # a law in closed form, its derivatives by mpmath's own differences, and no complex exponentials of ours
@@ -114,17 +98,6 @@ def test_curves_to_fifty_digits(drive):
         dot = normal[0] * outwards[0] + normal[1] * outwards[1]
         assert dot > 0
         assert cam.pressure_angle[k] == pytest.approx(float(MP.atan2(cross, dot)), abs=1e-14)
-
-
-@both
-def test_the_roller_touches_the_cam_and_never_cuts_it(drive):
-    cam = design_rocker_cam(**drive)
-    start, along = cam.profile[:-1], np.diff(cam.profile, axis=0)
-    for k in range(0, 1440, 90):
-        to = cam.path[k] - start
-        share = np.clip(np.sum(to * along, axis=1) / np.sum(along * along, axis=1), 0.0, 1.0)
-        gap = np.min(np.hypot(*(to - share[:, None] * along).T))
-        assert gap == pytest.approx(0.019, abs=2e-6)  # a polygon of 1440 corners instead of the curve
 
 
 def test_a_pair_of_cams_holds_the_rocker_both_ways():

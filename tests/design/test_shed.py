@@ -28,12 +28,6 @@ def published_heights():
     return stream_heights(stream_shed_height("10 mm", "5 mm", "1.5 mm"), "10 mm", **PUBLISHED)
 
 
-def test_published_heights():
-    found = published_heights()
-    heights = [found.entry_lower, found.entry_upper, found.exit_lower, found.exit_upper]
-    assert heights == pytest.approx([1.5e-3, 15e-3, 2e-3, 14.5e-3], rel=1e-14)  # rounding
-
-
 def test_control_points_are_those_of_table_4_2():
     angles, heights = control_points(published_heights())
     rows = table("shed_control_points")

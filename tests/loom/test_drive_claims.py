@@ -72,11 +72,6 @@ def test_a_skip_that_leaves_no_revolution_is_named():
     assert found.note.endswith(" and needs 6; raise revolutions")
 
 
-def test_a_scene_without_a_motor_has_no_power_to_judge():
-    with pytest.raises(loomfmu.LoomfmuError, match="shaft has no output 'motor_power'"):
-        verdicts(LOOM, POWER)
-
-
 def energy(steps=360, fittings="", shaft=""):
     keys = f'weave = "10/01"\nreed = true\n{fittings}\n[shaft]\ncomponent = "DrivenShaft"\n'
     times = {"revolutions": 1, "steps_per_revolution": steps, "coupling": "iterated"}

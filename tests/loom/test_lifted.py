@@ -124,13 +124,6 @@ def test_an_end_that_the_carrier_never_reaches_is_missed_there(clearance, reache
 
 
 @pytest.mark.usefixtures("fmu_cache")
-def test_no_energy_is_lost_where_carriers_and_warp_load_a_driven_shaft() -> None:
-    driven = DAMPED + 'component = "DrivenShaft"\ninertia = "5 kg.m2"\n' + claim("energy_balance")
-    (balance,) = verdicts(driven, revolutions=1, coupling="iterated")
-    assert balance, balance
-
-
-@pytest.mark.usefixtures("fmu_cache")
 @pytest.mark.parametrize(
     ("claim", "said"),
     [

@@ -57,38 +57,6 @@ def test_no_decay_is_special(decay):
         agree(net, rise, 0.5, 2.0, 4.0 * decay)
 
 
-@given(torques, torques, st.floats(0.0, 50.0), st.floats(-40.0, 40.0))
-def test_work_of_the_motor_is_work_of_the_load_and_kinetic_energy(net, rise, slope, velocity):
-    inertia, duration, load = 2.0, 0.2, 17.0
-
-    def surplus(share):
-        """Power of the motor less that of the load, after a share of the step."""
-        share = float(share)
-        gained, _angle = moved(net, rise * share, duration * share, inertia, slope)
-        motor = net + load - slope * gained
-        return MP.mpf((motor - load - rise * share) * (velocity + gained))
-
-    work = duration * MP.quad(surplus, [0, 1], method="gauss-legendre", maxdegree=4)
-    gained, _angle = moved(net, rise, duration, inertia, slope)
-    kinetic = inertia * gained * (velocity + 0.5 * gained)
-    # rounding of the torques and of the powers; z is 5 at most, and the quadrature of 48 points exact
-    largest = (abs(net) + abs(rise) + load + slope * abs(gained)) * (abs(velocity) + abs(gained) + 100.0)
-    assert abs(work - kinetic) < 1e-15 * duration * largest + 1e-15 * abs(kinetic)
-
-
-@given(torques, torques, st.floats(0.0, 1.0), st.sampled_from([0.0, 0.1, 40.0, 1e4]))
-def test_a_step_is_the_sum_of_its_parts(net, rise, part, slope):
-    inertia, duration = 2.0, 0.1
-    whole = moved(net, rise, duration, inertia, slope)
-    first = moved(net, rise * part, duration * part, inertia, slope)
-    rest = duration * (1.0 - part)
-    second = moved(net - rise * part - slope * first[0], rise * (1.0 - part), rest, inertia, slope)
-    # the balance of motor and load at the joint is rounded: to 1e-16 of either, over J or over k
-    scale = 1e-15 * (abs(net) + 2.0 * abs(rise)) * min(duration / inertia, 1.0 / slope if slope else 1.0)
-    assert abs(first[0] + second[0] - whole[0]) <= 4.0 * scale
-    assert abs(first[1] + first[0] * rest + second[1] - whole[1]) <= 4.0 * scale * duration
-
-
 def test_a_step_of_no_length_moves_nothing():
     assert moved(5.0, 3.0, 0.0, 2.0, 40.0) == (0.0, 0.0)
 

@@ -23,14 +23,6 @@ def test_rates_belong_to_the_lift(angle, velocity, acceleration):
     assert abs(found[2] - 2 * exact[2]) < 1e-12
 
 
-def test_frame_rests_at_both_ends():
-    # at the slow points it stands, whatever its rotor's speed
-    for turns in range(-3, 4):
-        share, rate, _second = lift_fraction(2 * pi * turns, 50.0, 0.0)
-        assert share == pytest.approx(turns % 2, abs=1e-30 if turns == 0 else 1e-15)  # rounding of cos
-        assert rate == pytest.approx(0.0, abs=1e-13)  # rounding of n pi, times 12
-
-
 @given(st.floats(-1e6, 1e6))
 def test_slow_points_are_whole_turns(angle):
     turns = slow_points_passed(angle)

@@ -1,13 +1,11 @@
 """Main shaft: the ramp and the ripple are derivatives of their angle, exactly."""
 
-from math import pi
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from reference import MP
 
-from loomfmu.physics.shaft import carried, ramp, shaft_motion
+from loomfmu.physics.shaft import ramp, shaft_motion
 
 
 def exact_angle(time, speed, start, duration, amplitude, order):
@@ -49,18 +47,3 @@ def test_ramp_joins_smoothly_and_costs_half_its_duration():
         assert share == pytest.approx(round(share), abs=2e-15)  # 10 u^3 = 1e-18 and rounding of terms of 15
         assert rate < 1e-11  # 30 u^2 / T = 4e-12
         assert equivalent == pytest.approx(max(near - 1.0, 0.0), abs=1e-15)  # rounding
-
-
-def test_ripple_repeats_with_the_shaft():
-    # over a whole turn of the mean angle the ripple takes nothing away
-    turned = shaft_motion(2 * pi / 40.0, 40.0, 0.3, 0.0, 0.5, 3)[0]
-    assert turned - 0.3 == pytest.approx(2 * pi, abs=1e-14)  # rounding of a few radians
-
-
-@given(st.floats(0.0, 2.0), st.floats(0.0, 0.95), st.integers(1, 100))
-def test_shaft_never_turns_back(time, amplitude, order):
-    assert shaft_motion(time, 50.0, 0.0, 0.0, amplitude, order)[1] > 0.0
-
-
-def test_carried_is_the_taylor_polynomial():
-    assert carried(3.0, -2.0, 6.0, 0.5) == 3.0 - 1.0 + 0.75

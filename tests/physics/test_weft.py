@@ -75,21 +75,11 @@ def test_running_yarn_over_eyes_by_its_momentum(before, density, speed, unwindin
         capstan_gain(friction, sum(angles)), before, unwinding * density, density, 0.0, 0.0, speed, 0.0
     )
     start = before + unwinding * density * speed**2
-    # (1 + f) / (1 - f) with f = mu tan(turn / 2) at each corner: third order in turns of at most 0.02
+    # (1 + f) / (1 - f) with f = mu tan(turn / 2) at each corner: its logarithm is off by
+    # mu (1 + mu^2) turn^3 / 12, in 400 turns of 0.02 by at most 1.7e-4
     assert limit == pytest.approx(
-        over_eyes(start, density, speed, friction, angles, 100), rel=1e-4, abs=1e-4 * density * speed**2
+        over_eyes(start, density, speed, friction, angles, 100), rel=2e-4, abs=1e-4 * density * speed**2
     )
-
-
-@given(st.floats(-50.0, 50.0), st.floats(-5e3, 5e3), st.floats(0.1, 5.0))
-def test_momentum_alone(speed, acceleration, length):
-    """Without brake, eyes and drag the head supplies the yarn's momentum: d(q L v)/dt, as L' = v."""
-    density = 30e-6
-    limit, _rate = drawing_limit(1.0, 0.0, density, density, 0.0, 0.0, speed, acceleration)
-    exact = density * (MP.mpf(speed) ** 2 + MP.mpf(length) * acceleration)
-    found = limit + moving_load(length, speed, acceleration, density, 0.0)
-    # a few roundings of both terms, and what lies below the smallest floats
-    assert abs(found - exact) <= 4e-16 * density * (speed**2 + length * abs(acceleration)) + 1e-300
 
 
 @given(st.floats(-50.0, 50.0), st.floats(-5e3, 5e3), st.floats(-1e6, 1e6), st.floats(0.1, 5.0))

@@ -14,7 +14,8 @@ import psutil
 import pytest
 
 from loomfmu import LoomfmuError
-from loomfmu.sweeps.pools import Here, Pool, Processes, Task, WorkerDied, _undisturbed
+from loomfmu.sweeps.pools import Here, Processes, Task, WorkerDied, _undisturbed
+from loomfmu.sweeps.schedule import Pool
 
 
 @pytest.fixture

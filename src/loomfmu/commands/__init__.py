@@ -20,6 +20,27 @@ STATUSES = (
     " 130 interrupted."
 )
 
+COMMANDS = (  # in the order of the help
+    scenes.run,
+    traces.show,
+    traces.report,
+    scenes.page,
+    traces.diagram,
+    traces.plot,
+    traces.compare,
+    studies.sweep,
+    studies.limit,
+    studies.tolerances,
+    studies.optimize,
+    studies.fit,
+    package.list_,
+    package.init,
+    package.new,
+    package.build,
+    scenes.export,
+    package.cache,
+)
+
 
 class _Parser(argparse.ArgumentParser):
     """Every command takes `--debug`; errors are printed like all other messages."""
@@ -67,25 +88,6 @@ def parser() -> argparse.ArgumentParser:
     parser.set_defaults(debug=False)
     parser.add_argument("--version", action=_Version, nargs=0, help="print the version and exit")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for add in (
-        scenes.add_run,
-        traces.add_show,
-        traces.add_report,
-        scenes.add_page,
-        traces.add_diagram,
-        traces.add_plot,
-        traces.add_compare,
-        studies.add_sweep,
-        studies.add_limit,
-        studies.add_tolerances,
-        studies.add_optimize,
-        studies.add_fit,
-        package.add_list,
-        package.add_init,
-        package.add_new,
-        package.add_build,
-        scenes.add_export,
-        package.add_cache,
-    ):
-        add(commands)
+    for each in COMMANDS:
+        each.add(commands)
     return parser

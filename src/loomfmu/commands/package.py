@@ -4,37 +4,27 @@ import argparse
 import shlex
 import shutil
 from pathlib import Path
-from typing import Any
 
 from ..display.printed import say
 from ..errors import LoomfmuError
-from .shared import add_force, add_platform, platforms
+from .shared import PLATFORM, argument, command, flag, force, platforms
 
 
-def add_build(commands: Any) -> None:
-    """Add `build` and its arguments."""
-    command = commands.add_parser("build", help="build FMUs")
-    command.add_argument(
-        "names",
-        nargs="*",
-        metavar="NAME",
-        help="an FMU, or FILE.py[:CLASS] for one of your own; all FMUs by default",
-    )
-    command.add_argument(
+@command(
+    argument(
+        "names", "NAME", "an FMU, or FILE.py[:CLASS] for one of your own; all FMUs by default", nargs="*"
+    ),
+    argument(
         "--output",
+        "DIR",
+        "build/fmus by default; build/native or build/native_fmi3 for native FMUs",
         type=Path,
-        metavar="DIR",
-        help="build/fmus by default; build/native or build/native_fmi3 for native FMUs",
-    )
-    command.add_argument("--native", action="store_true", help="build native FMUs: in C, without Python")
-    add_platform(command)
-    command.add_argument(
-        "--fmi", type=int, choices=(2, 3), default=2, help="FMI version of native FMUs; 2 by default"
-    )
-    add_force(command, "third-party FMUs in DIR")
-    command.set_defaults(action=build)
-
-
+    ),
+    flag("--native", "build native FMUs: in C, without Python"),
+    PLATFORM,
+    argument("--fmi", None, "FMI version of native FMUs; 2 by default", type=int, choices=(2, 3), default=2),
+    force("third-party FMUs in DIR"),
+)
 def build(options: argparse.Namespace) -> int:
     """Build FMUs."""
     from concurrent.futures import ThreadPoolExecutor
@@ -63,20 +53,13 @@ def build(options: argparse.Namespace) -> int:
     return 0
 
 
-def add_list(commands: Any) -> None:
-    """Add `list` and its arguments."""
-    command = commands.add_parser("list", help="list FMUs, machines, heads and example scenes")
-    command.add_argument(
-        "name",
-        nargs="?",
-        metavar="NAME",
-        help="describe this FMU, FILE.fmu, FILE.py[:CLASS], machine or rapier head",
+@command(
+    argument(
+        "name", "NAME", "describe this FMU, FILE.fmu, FILE.py[:CLASS], machine or rapier head", nargs="?"
     )
-    command.set_defaults(action=list_)
-
-
+)
 def list_(options: argparse.Namespace) -> int:
-    """List FMUs, machines, heads and examples, or describe one."""
+    """List FMUs, machines, heads and example scenes."""
     from .. import catalogue
 
     width = shutil.get_terminal_size().columns
@@ -85,23 +68,19 @@ def list_(options: argparse.Namespace) -> int:
     return 0
 
 
-def add_init(commands: Any) -> None:
-    """Add `init` and its arguments."""
-    command = commands.add_parser("init", help="write an example scene and a sweep of it")
-    command.add_argument(
+@command(
+    argument(
         "directory",
+        "DIR",
+        "folder to write to; the current one by default",
         nargs="?",
         type=Path,
         default=Path(),
-        metavar="DIR",
-        help="folder to write to; the current one by default",
-    )
-    command.add_argument("--all", action="store_true", help="write every example scene")
-    command.set_defaults(action=init)
-
-
+    ),
+    flag("--all", "write every example scene"),
+)
 def init(options: argparse.Namespace) -> int:
-    """Write the examples."""
+    """Write an example scene and a sweep of it."""
     from .. import catalogue
     from ..extras import install, installed
 
@@ -114,22 +93,14 @@ def init(options: argparse.Namespace) -> int:
     return 0
 
 
-def add_new(commands: Any) -> None:
-    """Add `new` and its arguments."""
-    command = commands.add_parser("new", help="write a folder for a mechanism of your own, ready to run")
-    command.add_argument("name", metavar="NAME", help="class name, such as PickingCam")
-    command.add_argument(
-        "--output",
-        type=Path,
-        default=Path(),
-        metavar="DIR",
-        help="where to put the folder; the current folder by default",
-    )
-    command.set_defaults(action=new)
-
-
+@command(
+    argument("name", "NAME", "class name, such as PickingCam"),
+    argument(
+        "--output", "DIR", "where to put the folder; the current folder by default", type=Path, default=Path()
+    ),
+)
 def new(options: argparse.Namespace) -> int:
-    """Write a folder for a mechanism of the user's own."""
+    """Write a folder for a mechanism of your own, ready to run."""
     from ..cosim.scenes.instances import TAKEN
     from ..cosim.scenes.settings import KEYS
     from ..loom.standard_loom import COMPONENT_OF
@@ -141,15 +112,9 @@ def new(options: argparse.Namespace) -> int:
     return 0
 
 
-def add_cache(commands: Any) -> None:
-    """Add `cache` and its arguments."""
-    command = commands.add_parser("cache", help="show location and size of the cache of built FMUs")
-    command.add_argument("--clear", action="store_true", help="empty it; FMUs are built again when needed")
-    command.set_defaults(action=cache)
-
-
+@command(flag("--clear", "empty it; FMUs are built again when needed"))
 def cache(options: argparse.Namespace) -> int:
-    """Show the cache of built FMUs, or empty it."""
+    """Show location and size of the cache of built FMUs."""
     from ..cache.directory import cache_directory
     from ..cache.entries import clear, contents
 

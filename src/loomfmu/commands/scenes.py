@@ -6,12 +6,26 @@ import shutil
 import sys
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..display.printed import complain, say, warn
 from ..errors import LoomfmuError
-from .printing import print_verdicts, revolutions
-from .shared import add_force, add_platform, add_scene, add_set, add_vary, ending, pairs, platforms
+from .shared import (
+    PLATFORM,
+    SCENE,
+    SCENE_FILE,
+    SET,
+    argument,
+    command,
+    flag,
+    force,
+    one_of,
+    pairs,
+    platforms,
+    print_verdicts,
+    revolutions,
+    vary,
+)
 from .status import BEGUN, status_of
 
 if TYPE_CHECKING:
@@ -19,31 +33,24 @@ if TYPE_CHECKING:
     from ..traces import Trace
 
 
-def add_run(commands: Any) -> None:
-    """Add `run` and its arguments."""
-    command = commands.add_parser("run", help="simulate a scene, record a trace and check the claims")
-    add_scene(command)
-    add_set(command)
-    command.add_argument(
+@command(
+    SCENE,
+    SET,
+    argument(
         "--output",
-        metavar="FILE.h5",
-        help="trace file; results/SCENE.h5 by default, with the values of --set results/SCENE_VALUES.h5",
-    )
-    flavour = command.add_mutually_exclusive_group()
-    flavour.add_argument(
-        "--live", action="store_true", help="use live FMUs (Python) instead of native ones (compiled)"
-    )
-    flavour.add_argument("--native", action="store_true", help=argparse.SUPPRESS)  # which it does anyway
-    command.add_argument(
-        "--report", action="store_true", help="also write a page to look at, beside the trace"
-    )
-    command.add_argument("--explain", action="store_true", help="report skipped FMUs, outputs and steps")
-    add_force(command, "FILE.h5 even if it is not a trace")
-    command.set_defaults(action=run)
-
-
+        "FILE.h5",
+        "trace file; results/SCENE.h5 by default, with the values of --set results/SCENE_VALUES.h5",
+    ),
+    one_of(
+        flag("--live", "use live FMUs (Python) instead of native ones (compiled)"),
+        flag("--native", argparse.SUPPRESS),  # which it does anyway
+    ),
+    flag("--report", "also write a page to look at, beside the trace"),
+    flag("--explain", "report skipped FMUs, outputs and steps"),
+    force("FILE.h5 even if it is not a trace"),
+)
 def run(options: argparse.Namespace) -> int:
-    """Run a scene and judge its claims."""
+    """Simulate a scene, record a trace and check the claims."""
     from ..cosim.master.guards import supervised
     from ..cosim.reading import checked
 
@@ -132,36 +139,31 @@ def _print_pace(result: "Result") -> None:
     say(f"{result.steps} steps with {kind}, {pace}; {perf_counter() - BEGUN:.2f} s in total")
 
 
-def add_export(commands: Any) -> None:
-    """Add `export` and its arguments."""
-    command = commands.add_parser(
-        "export", help="write a scene as one FMU, or as a system package (SSP), for other tools"
-    )
-    command.add_argument("scene", type=ending(".toml"), metavar="SCENE.toml")
-    file = command.add_mutually_exclusive_group(required=True)
-    file.add_argument(
-        "--fmu",
-        type=Path,
-        metavar="FILE.fmu",
-        help="write one native FMU: all mechanisms wired inside, without delay between them",
-    )
-    file.add_argument(
-        "--ssp", type=Path, metavar="FILE.ssp", help="write a system package: one FMU for each mechanism"
-    )
-    add_set(command)
-    command.add_argument("--fmi", type=int, choices=(2, 3), help="FMI version of FILE.fmu; 2 by default")
-    command.add_argument(
+@command(
+    SCENE_FILE,
+    one_of(
+        argument(
+            "--fmu",
+            "FILE.fmu",
+            "write one native FMU: all mechanisms wired inside, without delay between them",
+            type=Path,
+        ),
+        argument("--ssp", "FILE.ssp", "write a system package: one FMU for each mechanism", type=Path),
+        required=True,
+    ),
+    SET,
+    argument("--fmi", None, "FMI version of FILE.fmu; 2 by default", type=int, choices=(2, 3)),
+    argument(
         "--flavour",
+        None,
+        "kind of FMUs in FILE.ssp; native by default if they can be built",
         choices=("live", "native"),
-        help="kind of FMUs in FILE.ssp; native by default if they can be built",
-    )
-    add_platform(command)
-    add_force(command, "the file even if loomfmu did not write it")
-    command.set_defaults(action=export)
-
-
+    ),
+    PLATFORM,
+    force("the file even if loomfmu did not write it"),
+)
 def export(options: argparse.Namespace) -> int:
-    """Write a scene as one FMU or as a system package."""
+    """Write a scene as one FMU, or as a system package (SSP), for other tools."""
     from ..cosim import whole
     from ..cosim.scenes import scene
     from ..cosim.ssp import export as ssp
@@ -181,27 +183,20 @@ def export(options: argparse.Namespace) -> int:
     return 0
 
 
-def add_page(commands: Any) -> None:
-    """Add `page` and its arguments."""
-    command = commands.add_parser("page", help="write a scene as a page in which its FMUs run (HTML)")
-    command.add_argument("scene", type=ending(".toml"), metavar="SCENE.toml")
-    add_vary(
-        command,
+@command(
+    SCENE_FILE,
+    vary(
         "what the page has a slider for, such as shaft.speed=400rpm..800rpm (repeatable); without a range"
-        " 20 %% around the scene's value, or its choices; the shaft's speed by default",
-    )
-    add_set(command)
-    command.add_argument(
-        "--output",
-        metavar="FILE.html",
-        help="results/SCENE_page.html by default, with the values of --set in its name",
-    )
-    add_force(command, "FILE.html even if it is not such a page")
-    command.set_defaults(action=page)
-
-
+        " 20 %% around the scene's value, or its choices; the shaft's speed by default"
+    ),
+    SET,
+    argument(
+        "--output", "FILE.html", "results/SCENE_page.html by default, with the values of --set in its name"
+    ),
+    force("FILE.html even if it is not such a page"),
+)
 def page(options: argparse.Namespace) -> int:
-    """Write a scene as a page in which its FMUs run."""
+    """Write a scene as a page in which its FMUs run (HTML)."""
     from ..live_page import write
 
     def warn(warning: str) -> None:

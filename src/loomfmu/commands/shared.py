@@ -1,12 +1,66 @@
-"""Arguments that several commands take, and what their texts hold."""
+"""Commands as declarations, and what several of them take and print."""
 
 import argparse
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from .. import units
+from ..display import printed
+from ..display.printed import say
 from ..errors import LoomfmuError
+
+if TYPE_CHECKING:
+    from ..traces import Verdict
+
+Action = Callable[[argparse.Namespace], int]
+Argument = Callable[[Any], object]  # adds itself to a parser, or to a group of one
+
+
+def argument(name: str, metavar: str | None, about: str = "", **given: Any) -> Argument:
+    """Return an argument; what is `given` beside its help is that of `ArgumentParser.add_argument`."""
+    return lambda parser: parser.add_argument(name, metavar=metavar, help=about or None, **given)
+
+
+def flag(name: str, about: str) -> Argument:
+    """Return an option without a value."""
+    return lambda parser: parser.add_argument(name, action="store_true", help=about)
+
+
+def one_of(*arguments: Argument, required: bool = False) -> Argument:
+    """Return arguments of which at most one is given, and one must be if that is `required`."""
+
+    def add(parser: Any) -> None:
+        group = parser.add_mutually_exclusive_group(required=required)
+        for each in arguments:
+            each(group)
+
+    return add
+
+
+@dataclass(frozen=True)
+class Command:
+    """A command: its arguments and its action, whose name and whose docstring are the command's own."""
+
+    arguments: Sequence[Argument]
+    action: Action
+    statuses: str = ""
+
+    def add(self, commands: Any) -> None:
+        """Add it to the commands of a parser."""
+        about = (self.action.__doc__ or "").rstrip(".")
+        name = self.action.__name__.rstrip("_")
+        epilog = f"Exit status: {self.statuses}" if self.statuses else None
+        parser = commands.add_parser(name, help=about[:1].lower() + about[1:], epilog=epilog)
+        parser.set_defaults(action=self.action)
+        for each in self.arguments:
+            each(parser)
+
+
+def command(*arguments: Argument, statuses: str = "") -> Callable[[Action], Command]:
+    """Declare a function to be a command with these arguments; its help states exit `statuses` of its own."""
+    return lambda action: Command(arguments, action, statuses)
 
 
 def ending(suffix: str) -> Callable[[str], str]:
@@ -19,59 +73,41 @@ def ending(suffix: str) -> Callable[[str], str]:
     return named
 
 
-def add_scene(command: argparse.ArgumentParser) -> None:
-    """The scene that a command takes."""
-    command.add_argument(
-        "scene", type=ending(".toml"), metavar="SCENE", help="a scene (.toml) or a system package (.ssp)"
-    )
+SCENE_FILE = argument("scene", "SCENE.toml", type=ending(".toml"))
+SCENE = argument("scene", "SCENE", "a scene (.toml) or a system package (.ssp)", type=ending(".toml"))
+TRACE = argument("trace", "FILE.h5", type=ending(".h5"))
+SET = argument(
+    "--set",
+    "INSTANCE.VARIABLE=VALUE",
+    "override a value of the scene, such as shaft.speed=685rpm",
+    action="append",
+    default=[],
+    dest="overrides",
+)
+PLATFORM = argument(
+    "--platform", "NAME[,NAME]", "platforms of native FMUs: linux64,win64,darwin64; all by default"
+)
 
 
-def add_set(command: argparse.ArgumentParser) -> None:
-    """Values that a command overrides."""
-    command.add_argument(
-        "--set",
-        action="append",
-        default=[],
-        metavar="INSTANCE.VARIABLE=VALUE",
-        dest="overrides",
-        help="override a value of the scene, such as shaft.speed=685rpm",
-    )
-
-
-def add_vary(command: argparse.ArgumentParser, about: str, required: bool = False) -> None:
+def vary(about: str, required: bool = False) -> Argument:
     """The variables that a command varies; where one is `required`, its range need not be given."""
     metavar = "INSTANCE.VARIABLE[=LOW..HIGH]" if required else "INSTANCE.VARIABLE=LOW..HIGH"
-    command.add_argument(
-        "--vary", action="append", default=[], required=required, metavar=metavar, help=about
+    return argument("--vary", metavar, about, action="append", default=[], required=required)
+
+
+def place(name: str) -> tuple[Argument, ...]:
+    """The arguments that say where many runs go and which processes make them."""
+    return (
+        argument("--output", "DIR", f"folder for the results; results/{name} by default"),
+        argument("--processes", "N", "worker processes on this machine; one per core by default", type=int),
+        argument("--scheduler", "ADDRESS", "run on a dask cluster, such as tcp://host:8786"),
+        flag("--restart", "discard earlier results in DIR and run everything again"),
     )
 
 
-def add_place(command: argparse.ArgumentParser, name: str) -> None:
-    """Add the options that say where many runs go and which processes make them."""
-    command.add_argument("--output", metavar="DIR", help=f"folder for the results; results/{name} by default")
-    command.add_argument(
-        "--processes", type=int, metavar="N", help="worker processes on this machine; one per core by default"
-    )
-    command.add_argument(
-        "--scheduler", metavar="ADDRESS", help="run on a dask cluster, such as tcp://host:8786"
-    )
-    command.add_argument(
-        "--restart", action="store_true", help="discard earlier results in DIR and run everything again"
-    )
-
-
-def add_platform(command: argparse.ArgumentParser) -> None:
-    """The platforms of native FMUs."""
-    command.add_argument(
-        "--platform",
-        metavar="NAME[,NAME]",
-        help="platforms of native FMUs: linux64,win64,darwin64; all by default",
-    )
-
-
-def add_force(command: argparse.ArgumentParser, what: str) -> None:
+def force(what: str) -> Argument:
     """Leave to replace what loomfmu did not write."""
-    command.add_argument("--force", action="store_true", help=f"replace {what}")
+    return flag("--force", f"replace {what}")
 
 
 def pairs(texts: Sequence[str], option: str = "--set") -> dict[str, Any]:
@@ -102,3 +138,26 @@ def platforms(options: argparse.Namespace) -> tuple[str, ...]:
     from ..fmi.native.platforms import PLATFORMS, check_platforms
 
     return check_platforms(tuple(options.platform.split(",") if options.platform else PLATFORMS))
+
+
+def revolutions(count: str) -> str:
+    """A count of revolutions."""
+    return f"{count} revolution" + "s" * (count != "1")
+
+
+def print_verdicts(verdicts: "Sequence[Verdict]") -> None:
+    """The verdicts as a table."""
+    if not verdicts:
+        say("no claims")
+        return
+    from ..traces.verdict import HEADINGS
+
+    rows = [verdict.row for verdict in verdicts]
+    entries = []
+    for word, claim, name, worst, bound, distance, error, place, note in rows:
+        away = f" ({distance})" if distance != "-" else ""
+        away += f", error {error}" if error != "-" else ""
+        at = f", at {place}" if place != "-" else ""
+        entry = f"{word}  {claim}", f"({name})", f"{worst}, bound {bound}{away}{at}"
+        entries.append((*entry, f"({note})") if note else entry)
+    printed.show(HEADINGS, rows, entries)

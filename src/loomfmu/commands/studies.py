@@ -8,17 +8,10 @@ from typing import Any
 from ..display.printed import say, warn
 from ..errors import LoomfmuError
 from ..files import check_target
-from .shared import add_force, add_place, add_scene, add_set, add_vary, ending, pairs
+from .shared import SCENE, SET, argument, command, ending, force, pairs, place, vary
 
 
-def add_sweep(commands: Any) -> None:
-    """Add `sweep` and its arguments."""
-    command = commands.add_parser("sweep", help="run a scene with many combinations of values")
-    command.add_argument("sweep", type=ending(".toml"), metavar="SWEEP.toml")
-    add_place(command, "SWEEP")
-    command.set_defaults(action=sweep)
-
-
+@command(argument("sweep", "SWEEP.toml", type=ending(".toml")), *place("SWEEP"))
 def sweep(options: argparse.Namespace) -> int:
     """Run a scene with many combinations of values."""
     from ..sweeps.run import sweep as run_sweep
@@ -36,47 +29,30 @@ def _places(options: argparse.Namespace) -> dict[str, Any]:
     return {name: getattr(options, name) for name in ("output", "processes", "scheduler", "restart")}
 
 
-def add_limit(commands: Any) -> None:
-    """Add `limit` and its arguments."""
-    command = commands.add_parser(
-        "limit",
-        help="find the values at which claims begin to fail",
-        epilog="Exit status: 0 all claims hold in some range; 1 in none; 2 bad input or a failed FMU.",
-    )
-    add_scene(command)
-    add_vary(
-        command,
+@command(
+    SCENE,
+    vary(
         "what is varied, such as shaft.speed or shaft.speed=300rpm..900rpm; a second one gives the limits of"
         " the first at values of the second",
         required=True,
-    )
-    command.add_argument(
-        "--from",
-        dest="from_",
-        metavar="LOW",
-        help="where the range of the first --vary begins, with its unit",
-    )
-    command.add_argument(
+    ),
+    argument("--from", "LOW", "where the range of the first --vary begins, with its unit", dest="from_"),
+    argument(
         "--to",
-        metavar="HIGH",
-        help="where it ends; by default both are the variable's bounds, or half and twice the scene's value",
-    )
-    command.add_argument(
-        "--points", type=int, metavar="N", help="values of the first that are tried first (41)"
-    )
-    command.add_argument("--rows", type=int, metavar="N", help="values of the second that are taken (11)")
-    add_set(command)
-    command.add_argument(
-        "--output", metavar="FILE.csv|svg|png|pdf", help="also write the limits as a table or a picture"
-    )
-    add_force(command, "the file even if it is not such a table or picture")
-    command.set_defaults(action=limit)
-
-
+        "HIGH",
+        "where it ends; by default both are the variable's bounds, or half and twice the scene's value",
+    ),
+    argument("--points", "N", "values of the first that are tried first (41)", type=int),
+    argument("--rows", "N", "values of the second that are taken (11)", type=int),
+    SET,
+    argument("--output", "FILE.csv|svg|png|pdf", "also write the limits as a table or a picture"),
+    force("the file even if it is not such a table or picture"),
+    statuses="0 all claims hold in some range; 1 in none; 2 bad input or a failed FMU.",
+)
 def limit(options: argparse.Namespace) -> int:
     """Find the values at which claims begin to fail."""
     from ..studies.limits import limit_tables
-    from ..studies.limits.boundary import limit as find
+    from ..studies.limits.limits import limit as find
 
     inputs = [Path(options.scene)]
     output = Path(options.output) if options.output else None
@@ -114,26 +90,19 @@ def _reported(
     return 0 if found else 1
 
 
-def add_tolerances(commands: Any) -> None:
-    """Add `tolerances` and its arguments."""
-    command = commands.add_parser(
-        "tolerances",
-        help="find the worst case of every claim within tolerances",
-        epilog="Exit status: 0 all hold in their worst cases; 1 a claim fails or is undecided;"
-        " 2 bad input or a failed FMU.",
-    )
-    add_scene(command)
-    add_vary(
-        command,
+@command(
+    SCENE,
+    vary(
         "a tolerance, such as belt.guide_clearance=0.2mm..0.5mm (repeatable); those of the scene's"
-        " [tolerances] by default",
-    )
-    add_set(command)
-    command.add_argument("--picture", metavar="FILE.svg|png|pdf", help="also draw the worst cases")
-    add_force(command, "the picture even if loomfmu did not draw it")
-    command.set_defaults(action=tolerances)
-
-
+        " [tolerances] by default"
+    ),
+    SET,
+    argument("--picture", "FILE.svg|png|pdf", "also draw the worst cases"),
+    force("the picture even if loomfmu did not draw it"),
+    statuses=(
+        "0 all hold in their worst cases; 1 a claim fails or is undecided; 2 bad input or a failed FMU."
+    ),
+)
 def tolerances(options: argparse.Namespace) -> int:
     """Find the worst case of every claim within tolerances."""
     from ..report import pictures
@@ -149,21 +118,16 @@ def tolerances(options: argparse.Namespace) -> int:
     return _reported(found, show, drawn)
 
 
-def add_optimize(commands: Any) -> None:
-    """Add `optimize` and its arguments."""
-    command = commands.add_parser(
-        "optimize",
-        help="find the best design within ranges and choices, all claims met",
-        epilog="Exit status: 0 all claims hold in the best design; 1 one is undecided there, or no design"
-        " meets all claims; 2 bad input or a failed FMU.",
-    )
-    command.add_argument("study", type=ending(".toml"), metavar="STUDY.toml")
-    add_place(command, "STUDY")
-    command.set_defaults(action=optimize)
-
-
+@command(
+    argument("study", "STUDY.toml", type=ending(".toml")),
+    *place("STUDY"),
+    statuses=(
+        "0 all claims hold in the best design; 1 one is undecided there, or no design"
+        " meets all claims; 2 bad input or a failed FMU."
+    ),
+)
 def optimize(options: argparse.Namespace) -> int:
-    """Find the best design."""
+    """Find the best design within ranges and choices, all claims met."""
     from ..studies.optimizing.best_design import show
     from ..studies.optimizing.optimize import optimize as find
 
@@ -173,54 +137,43 @@ def optimize(options: argparse.Namespace) -> int:
     return 0 if found.holds else 1
 
 
-def add_fit(commands: Any) -> None:
-    """Add `fit` and its arguments."""
-    command = commands.add_parser(
-        "fit",
-        help="find parameters of a scene from measured curves",
-        epilog="Exit status: 0 the data are explained; 1 a signal is hardly explained, or a parameter ended"
-        " at an end of its range; 2 bad input or a failed FMU.",
-    )
-    add_scene(command)
-    command.add_argument(
+@command(
+    SCENE,
+    argument(
         "data",
-        metavar="DATA.csv|h5",
-        help="columns with units, such as shaft_angle [deg],damper_1.displacement [mm]; or a trace",
-    )
-    add_vary(
-        command,
-        "a parameter to find, such as damper_1.spring_stiffness=1N/mm..20N/mm (repeatable)",
-        required=True,
-    )
-    command.add_argument(
+        "DATA.csv|h5",
+        "columns with units, such as shaft_angle [deg],damper_1.displacement [mm]; or a trace",
+    ),
+    vary("a parameter to find, such as damper_1.spring_stiffness=1N/mm..20N/mm (repeatable)", required=True),
+    argument(
         "--signal",
+        "SIGNAL",
+        "what is fitted of the data (repeatable); all columns of a table by default",
         action="append",
         default=[],
-        metavar="SIGNAL",
-        help="what is fitted of the data (repeatable); all columns of a table by default",
-    )
-    command.add_argument(
+    ),
+    argument(
         "--offset",
-        metavar="LOW..HIGH",
-        help="also find what is added to the times or shaft angles of the data, such as -2ms..2ms",
-    )
-    command.add_argument(
+        "LOW..HIGH",
+        "also find what is added to the times or shaft angles of the data, such as -2ms..2ms",
+    ),
+    argument(
         "--loss",
-        metavar="LOSS",
+        "LOSS",
+        "soft_l1, huber, cauchy or arctan where some values may be far off; linear (least squares)",
         default="linear",
-        help="soft_l1, huber, cauchy or arctan where some values may be far off; linear (least squares)",
-    )
-    add_set(command)
-    command.add_argument("--output", metavar="FILE.toml", help="also write the scene with the fitted values")
-    command.add_argument(
-        "--picture", metavar="FILE.svg|png|pdf", help="also draw measured and computed curves"
-    )
-    add_force(command, "these files even if they are not a scene and a picture")
-    command.set_defaults(action=fit)
-
-
+    ),
+    SET,
+    argument("--output", "FILE.toml", "also write the scene with the fitted values"),
+    argument("--picture", "FILE.svg|png|pdf", "also draw measured and computed curves"),
+    force("these files even if they are not a scene and a picture"),
+    statuses=(
+        "0 the data are explained; 1 a signal is hardly explained, or a parameter ended"
+        " at an end of its range; 2 bad input or a failed FMU."
+    ),
+)
 def fit(options: argparse.Namespace) -> int:
-    """Find parameters from measured curves; write the scene and the picture that were asked for."""
+    """Find parameters of a scene from measured curves."""
     from ..cosim.reading import checked
     from ..report import pictures
     from ..studies import rewritten

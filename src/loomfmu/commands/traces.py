@@ -4,27 +4,20 @@ import argparse
 import json
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from .. import units
 from ..display import printed
 from ..display.printed import say
 from ..errors import LoomfmuError
 from ..files import check_target
-from .printing import print_verdicts, revolutions
-from .shared import add_force, ending, pairs, share
+from .shared import TRACE, argument, command, ending, flag, force, pairs, print_verdicts, revolutions, share
 
 if TYPE_CHECKING:
     from ..traces import Trace
 
 
-def add_show(commands: Any) -> None:
-    """Add `show` and its arguments."""
-    command = commands.add_parser("show", help="summarise a trace")
-    command.add_argument("trace", type=ending(".h5"), metavar="FILE.h5")
-    command.set_defaults(action=show)
-
-
+@command(TRACE)
 def show(options: argparse.Namespace) -> int:
     """Summarise a trace."""
     from ..traces import Trace
@@ -107,19 +100,13 @@ def _unknown(trace: "Trace") -> list[str]:
     ]
 
 
-def add_report(commands: Any) -> None:
-    """Add `report` and its arguments."""
-    command = commands.add_parser("report", help="write a trace as a page to look at (HTML)")
-    command.add_argument(
-        "traces", nargs="+", type=ending(".h5"), metavar="FILE.h5", help="the trace; others are laid over it"
-    )
-    command.add_argument("--output", metavar="FILE.html", help="beside the first trace by default")
-    add_force(command, "FILE.html even if it is not a report")
-    command.set_defaults(action=report)
-
-
+@command(
+    argument("traces", "FILE.h5", "the trace; others are laid over it", nargs="+", type=ending(".h5")),
+    argument("--output", "FILE.html", "beside the first trace by default"),
+    force("FILE.html even if it is not a report"),
+)
 def report(options: argparse.Namespace) -> int:
-    """Write traces as a page."""
+    """Write a trace as a page to look at (HTML)."""
     from ..report import write
     from ..traces.damage import check
 
@@ -129,26 +116,20 @@ def report(options: argparse.Namespace) -> int:
     return 0
 
 
-def add_diagram(commands: Any) -> None:
-    """Add `diagram` and its arguments."""
-    command = commands.add_parser("diagram", help="draw the timing diagram of a trace (SVG, PNG or PDF)")
-    command.add_argument("trace", type=ending(".h5"), metavar="FILE.h5")
-    command.add_argument(
+@command(
+    TRACE,
+    argument(
         "--revolution",
+        "N",
+        "counted from 1; that of the worst failure by default, or the last whole one",
         type=int,
-        metavar="N",
-        help="counted from 1; that of the worst failure by default, or the last whole one",
-    )
-    command.add_argument("--round", action="store_true", help="as rings around the shaft")
-    command.add_argument(
-        "--output", metavar="FILE.svg|png|pdf", help="FILE_diagram.svg beside the trace by default"
-    )
-    add_force(command, "the picture even if loomfmu did not draw it")
-    command.set_defaults(action=diagram)
-
-
+    ),
+    flag("--round", "as rings around the shaft"),
+    argument("--output", "FILE.svg|png|pdf", "FILE_diagram.svg beside the trace by default"),
+    force("the picture even if loomfmu did not draw it"),
+)
 def diagram(options: argparse.Namespace) -> int:
-    """Draw the timing diagram of a trace."""
+    """Draw the timing diagram of a trace (SVG, PNG or PDF)."""
     from ..report import diagram as timing
     from ..traces import Trace
     from ..traces.damage import check
@@ -162,34 +143,22 @@ def diagram(options: argparse.Namespace) -> int:
     return 0
 
 
-def add_plot(commands: Any) -> None:
-    """Add `plot` and its arguments."""
-    command = commands.add_parser("plot", help="plot signals of a trace (PNG, SVG or PDF)")
-    command.add_argument("trace", type=ending(".h5"), metavar="FILE.h5")
-    command.add_argument(
+@command(
+    TRACE,
+    argument(
         "names",
+        "SIGNAL",
+        "signals such as belt.margin; other traces (MORE.h5) before them are laid over the first",
         nargs="+",
-        metavar="SIGNAL",
-        help="signals such as belt.margin; other traces (MORE.h5) before them are laid over the first",
-    )
-    command.add_argument(
-        "--over", choices=("angle", "time"), help="the shaft's angle if a shaft turns, by default"
-    )
-    command.add_argument("--fold", action="store_true", help="lay the revolutions over one another")
-    command.add_argument(
-        "--ylim",
-        metavar="LOW..HIGH",
-        help="the range that is drawn, with its unit, such as 0..1 or 0mm..5mm",
-    )
-    command.add_argument(
-        "--output", metavar="FILE.png|svg|pdf", help="FILE_plot.png beside the trace by default"
-    )
-    add_force(command, "the picture even if loomfmu did not draw it")
-    command.set_defaults(action=plot)
-
-
+    ),
+    argument("--over", None, "the shaft's angle if a shaft turns, by default", choices=("angle", "time")),
+    flag("--fold", "lay the revolutions over one another"),
+    argument("--ylim", "LOW..HIGH", "the range that is drawn, with its unit, such as 0..1 or 0mm..5mm"),
+    argument("--output", "FILE.png|svg|pdf", "FILE_plot.png beside the trace by default"),
+    force("the picture even if loomfmu did not draw it"),
+)
 def plot(options: argparse.Namespace) -> int:
-    """Plot signals of traces."""
+    """Plot signals of a trace (PNG, SVG or PDF)."""
     from ..report import pictures
     from ..traces import Trace
     from ..traces.damage import check
@@ -206,45 +175,33 @@ def plot(options: argparse.Namespace) -> int:
     return 0
 
 
-def add_compare(commands: Any) -> None:
-    """Add `compare` and its arguments."""
-    command = commands.add_parser(
-        "compare",
-        help="report what differs between two traces, where first and by how much",
-        epilog="Exit status: 0 equal within the tolerance; 1 they differ; 2 bad input.",
-    )
-    command.add_argument("first", metavar="A.h5")
-    command.add_argument("second", metavar="B.h5")
-    command.add_argument(
+@command(
+    argument("first", "A.h5"),
+    argument("second", "B.h5"),
+    argument(
         "--tolerance",
-        action="append",
-        default=[],
-        metavar="SHARE|NAME=VALUE",
-        help="what may differ, as a share of each signal's largest magnitude (1e-9), such as 0.1%%; or, for"
+        "SHARE|NAME=VALUE",
+        "what may differ, as a share of each signal's largest magnitude (1e-9), such as 0.1%%; or, for"
         " one signal, an amount with its unit, such as belt.free_length=0.1mm",
-    )
-    command.add_argument(
-        "--ignore",
         action="append",
         default=[],
-        metavar="NAME",
-        help="leave signals and values out, such as 'motor.*'",
-    )
-    command.add_argument(
+    ),
+    argument(
+        "--ignore", "NAME", "leave signals and values out, such as 'motor.*'", action="append", default=[]
+    ),
+    argument(
         "--over",
+        None,
+        "compare at equal shaft angles or at equal times; shaft angles by default if the shafts turn",
         choices=("angle", "time"),
-        help="compare at equal shaft angles or at equal times; shaft angles by default if the shafts turn",
-    )
-    command.add_argument(
-        "--all", action="store_true", help="list all signals that differ, not only those that do so most"
-    )
-    command.add_argument("--report", metavar="FILE.html", help="also write a page that shows B over A")
-    add_force(command, "FILE.html even if it is not a report")
-    command.set_defaults(action=compare)
-
-
+    ),
+    flag("--all", "list all signals that differ, not only those that do so most"),
+    argument("--report", "FILE.html", "also write a page that shows B over A"),
+    force("FILE.html even if it is not a report"),
+    statuses="0 equal within the tolerance; 1 they differ; 2 bad input.",
+)
 def compare(options: argparse.Namespace) -> int:
-    """Report what differs between two traces."""
+    """Report what differs between two traces, where first and by how much."""
     from ..traces import comparing
     from ..traces.comparison import MOST
     from ..traces.damage import check

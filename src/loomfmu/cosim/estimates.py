@@ -21,7 +21,6 @@ from .claims.claim import Claim
 from .dependence import Count, Dependence, Judged, Method
 from .importing.process import AVAILABLE
 from .master.grid import Grid, uniform
-from .planning.requested import Requested
 from .scenes.instances import altered
 from .scenes.scene import Scene
 from .scenes.settings import WINDOWS
@@ -60,7 +59,7 @@ class Coarser:
 
 
 class Estimates:
-    """Errors of the verdicts on one scene.
+    """Errors of the verdicts on one scene, by what its claims depend on.
 
     `run` runs it, with other values, on any grid, and keeps so many `signals`. `deciders` are the claims
     whose numbers decide by their signs what other claims judge: the places of both.
@@ -68,14 +67,13 @@ class Estimates:
 
     def __init__(
         self,
-        requested: Requested,
-        claims: Sequence[Claim],
+        dependence: Dependence,
         run: Callable[[Scene, Grid], Signals],
         signals: int,
         deciders: Mapping[int, int],
     ):
-        self.claims, self._run, self._signals, self._deciders = claims, run, signals, deciders
-        self._dependence = Dependence(requested, claims)
+        self.claims, self._dependence = dependence.claims, dependence
+        self._run, self._signals, self._deciders = run, signals, deciders
         # what is kept of a run, beside what claims need, to tell whether steps are short enough
         self.shown = (*self._dependence.counters, *self._angles)
 

@@ -17,6 +17,7 @@ from . import accuracy
 from .claims import judging
 from .claims.claim import Claim
 from .claims.measures import measure
+from .dependence import Dependence
 from .estimates import Coarser, Estimates
 from .importing import pool
 from .importing.fmus import Flavour
@@ -68,7 +69,7 @@ class Pattern:
         first = len(self.claims) + len(measures)
         places = {number: first + place for place, number in enumerate(deciders)}
         self._measured = slice(len(self.claims), first)
-        self._estimates = Estimates(requested, self._all, self._on, len(needed), places)
+        self._estimates = Estimates(Dependence(requested, self._all), self._on, len(needed), places)
         self.judged = tuple(dict.fromkeys([*needed, *self._estimates.shown]))
         self.values = Values(self.scene)
         self._steps = 0  # in a revolution, as they were chosen last
@@ -188,11 +189,10 @@ class Pattern:
             writer = writer_of(plan, stepping.channels, path, target, about)
             with kept_readable(writer, path):
                 seconds = _recorded(master, writer, plan, progress)
-            steps, early = master.steps, early_end(plan, master.ended)
-            warnings = (*scene.notes, *master.warnings())
-            if coarser is None:
-                instances.close()  # coarser runs may be stepped by the same master
-                with kept_readable(writer, path):
+                steps, early = master.steps, early_end(plan, master.ended)
+                warnings = (*scene.notes, *master.warnings())
+                if coarser is None:
+                    instances.close()  # coarser runs may be stepped by the same master
                     try:
                         coarser = self._coarser(scene, plan.grid)
                     except KeyboardInterrupt:

@@ -19,7 +19,7 @@ from ..errors import LoomfmuError
 from ..fmi.native.libraries import needed_library
 from ..traces import Recording
 from .master.grid import Grid
-from .master.steppers import SOURCE
+from .master.steppers import SOURCE, arrays, fields
 from .planning.pruning import prune
 from .scenes.graph import step_order
 from .scenes.instances import Instance
@@ -35,36 +35,27 @@ SIZES = {float: 16, int: 8, bool: 1}  # bytes
 
 
 class _Dual(ctypes.Structure):
-    _fields_ = (
-        ("size", ctypes.c_size_t),
+    _fields_ = [
+        *fields(size="size_t"),
         ("offsets", ctypes.POINTER(ctypes.c_size_t)),
-        ("part", ctypes.c_void_p),
-    )
+        *fields(part="void_p"),
+    ]
 
 
 class _Copy(ctypes.Structure):
-    _fields_ = (("source", ctypes.c_void_p), ("to", ctypes.c_void_p), ("size", ctypes.c_size_t))
+    _fields_ = fields(source="void_p", to="void_p", size="size_t")
 
 
 class _Stepped(ctypes.Structure):
-    _fields_ = (
-        ("part", ctypes.c_void_p),
-        ("component", ctypes.c_void_p),
-        ("copies", ctypes.c_void_p),
-        ("copy_count", ctypes.c_size_t),
-    )
+    _fields_ = [*fields(part="void_p", component="void_p"), *arrays("copies")]
 
 
 class _Driven(ctypes.Structure):
-    _fields_ = (("to", ctypes.c_void_p), ("type", ctypes.c_int64))
+    _fields_ = fields(to="void_p", type="int64")
 
 
 class _Plan(ctypes.Structure):
-    _fields_ = tuple(
-        field
-        for name in ("parts", "driven", "kept")
-        for field in ((name, ctypes.c_void_p), (f"{name}_count", ctypes.c_size_t))
-    )
+    _fields_ = arrays("parts", "driven", "kept")
 
 
 class _Instance:

@@ -161,35 +161,19 @@ def clearance_for(speed: Quantity, machine: str, head: str = "G6300 left", **oth
     Raises LoomfmuError if no clearance is small enough, with the speeds in reach, or if every one is.
     """
     _refuse(others, "clearance", "length_factor")
-    return _solve(
-        "guide clearance",
-        "clearance",
-        speed,
-        lambda value: safe_speed(machine, head, clearance=value, **others).speed,
-        0.0,
-        0.8e-3,
-    )
+    return _solve("clearance", speed, machine, head=head, **others)
 
 
 def mass_for(speed: Quantity, machine: str, **others: Any) -> float:
     """Largest mass of the rapier head with which the belt is safe at a speed [kg]; see `clearance_for`."""
     _refuse(others, "mass")
-    return _solve(
-        "head mass", "mass", speed, lambda value: safe_speed(machine, mass=value, **others).speed, 1e-3, 10.0
-    )
+    return _solve("mass", speed, machine, **others)
 
 
 def stiffness_for(speed: Quantity, machine: str, head: str = "G6300 left", **others: Any) -> float:
     """Smallest bending stiffness with which the belt is safe at a speed [N m2]; see `clearance_for`."""
     _refuse(others, "stiffness")
-    return _solve(
-        "bending stiffness",
-        "stiffness",
-        speed,
-        lambda value: safe_speed(machine, head, stiffness=value, **others).speed,
-        1e-3,
-        100.0,
-    )
+    return _solve("stiffness", speed, machine, head=head, **others)
 
 
 def _refuse(given: dict[str, Any], sought: str, instead: str = "") -> None:
@@ -201,12 +185,22 @@ def _refuse(given: dict[str, Any], sought: str, instead: str = "") -> None:
             raise LoomfmuError(f"{name} is unknown{suggestion(name, QUANTITIES)}")
 
 
-def _solve(
-    what: str, name: str, wanted: Quantity, reached: Callable[[float], float], low: float, high: float
-) -> float:
+# what is sought for a speed: how messages call it, and between which values
+SOUGHT = {
+    "clearance": ("guide clearance", 0.0, 0.8e-3),
+    "mass": ("head mass", 1e-3, 10.0),
+    "stiffness": ("bending stiffness", 1e-3, 100.0),
+}
+
+
+def _solve(name: str, wanted: Quantity, machine: str, **others: Any) -> float:
     from scipy.optimize import brentq
 
-    speed = read("speed", wanted)
+    def reached(value: float) -> float:
+        given: dict[str, Any] = {name: value, **others}
+        return safe_speed(machine, **given).speed
+
+    speed, (what, low, high) = read("speed", wanted), SOUGHT[name]
     ends = reached(low), reached(high)
     if speed < min(ends):
         raise LoomfmuError(

@@ -9,18 +9,15 @@ from math import acos, asin, atan, cos, pi, sin, sqrt, tan
 def crank_rocker_without_quick_return(
     rocker: float, swing: float, frame_angle: float
 ) -> tuple[float, float, float, float]:
-    """Lengths of a crank-rocker whose rocker takes the same time to and fro, equations (9) and (13).
+    """Crank, coupler and frame [m] of a crank-rocker that takes as long to as fro, equations (9) and (13).
 
     `l1 = l3 sin(psi/2)`, `l2 = l3 cos(psi/2) tan(b)`, `l4 = l3 cos(psi/2) / cos(b)`,
-    `cos(smallest) = sin(psi/2) / sin(b)`.
+    `cos(smallest) = sin(psi/2) / sin(b)`. The fourth number is its smallest transmission angle [rad].
 
     Args:
         rocker: length l3 [m]
         swing: of the rocker, psi [rad]
         frame_angle: b between the frame and the middle of the swing, `swing / 2` to `pi / 2` [rad]
-
-    Returns:
-        crank l1, coupler l2, frame l4 [m], smallest transmission angle [rad]
 
     >>> from math import radians
     >>> round(1000 * crank_rocker_without_quick_return(0.55, radians(13.610), radians(15))[0], 2)  # 65.168
@@ -35,14 +32,11 @@ def crank_rocker_without_quick_return(
 
 
 def frame_angle_for(swing: float, smallest: float) -> float:
-    """Frame angle b that gives a smallest transmission angle, `sin(b) = sin(psi/2) / cos(smallest)`, (13).
+    """Frame angle b [rad] of a smallest transmission angle, `sin(b) = sin(psi/2) / cos(smallest)`, (13).
 
     Args:
         swing: of the rocker, psi [rad]
         smallest: transmission angle, below `(pi - swing) / 2` [rad]
-
-    Returns:
-        b [rad]
 
     Erratum: the source prints 8.906 and 29.354 deg for 40 and 76 deg, which takes a swing of 13.622 deg;
     its own is 13.610 deg.
@@ -55,16 +49,13 @@ def frame_angle_for(swing: float, smallest: float) -> float:
 
 
 def crank_place(rocker: float, swing: float, slope: float, frame_angle: float) -> tuple[float, float]:
-    """Position of the crank's centre, relative to the rocker's pivot: on the chord's line, equation (10).
+    """Position x, y of the crank's centre from the rocker's pivot [m]: on the chord's line, equation (10).
 
     The crank stands behind the swing, away from the reed.
 
     Args:
         rocker, swing, frame_angle: as for `crank_rocker_without_quick_return`
         slope: of the chord, dy/dx [1]
-
-    Returns:
-        x, y [m]
 
     >>> x, y = crank_place(0.55, 0.23754, 0.1154, 0.2618)
     >>> round(1000 * (y - 0.1154 * x), 2)  # the chord's line, y = 0.1154 x + 549.75 mm
@@ -82,19 +73,17 @@ def crank_place(rocker: float, swing: float, slope: float, frame_angle: float) -
 def reed_dyad(
     front: float, back: float, swing: float, slope: float, pressure_angle: float
 ) -> tuple[float, float, float]:
-    """Arm, rod and height that take the reed to two limits, with a given pressure angle at the front.
+    """Arm, rod and height [m] that take the reed to two limits, with a given pressure angle at the front.
 
     The rod is equally long at both limits, equation (2); with the chord of the swing given, that is one
-    quadratic equation for the arm. The source's table of given values is lost.
+    quadratic equation for the arm. The source's table of given values is lost. They are zeros if none has the
+    reed ahead of the arm at both limits.
 
     Args:
         front, back: limits of the reed, from the rocker's pivot [m]
         swing: of the rocker [rad]
         slope: of the chord of the swing, dy/dx [1]
         pressure_angle: slope of the rod at the front limit, of either sign [rad]
-
-    Returns:
-        arm, rod, height [m]; zeros if there is none with the reed ahead of the arm at both limits
 
     >>> from math import radians
     >>> dyad = reed_dyad(0.490, 0.330, radians(13.610), 0.1154, radians(-1.235))

@@ -18,15 +18,12 @@ TABLE_4_2 = ("80 deg", "295 deg", "450 deg", "657 deg")
 
 
 def stream_shed_height(confuser: Quantity, above: Quantity, below: Quantity) -> float:
-    """Height of the open shed at the axis of the stream, `h_c = D_k + D_1 + D_2 + D_3`, equation (4.2).
+    """Height of the open shed at the axis of the stream [m], `h_c = D_k + D_1 + D_2 + D_3`, equation (4.2).
 
     Args:
         confuser: inner diameter D_k of the confuser's plates [m]
         above: gap of the upper warp above the plate and height of the plate there, D_1 + D_3 [m]
         below: gap of the lower warp below the plate's inside, D_2 [m]
-
-    Returns:
-        height [m]
 
     >>> round(1000 * stream_shed_height("10 mm", "5 mm", "1.5 mm"), 9)  # published 16.5
     16.5

@@ -2,6 +2,9 @@
 
 Source: Zhu and Zhou, J. Zhejiang Sci-Tech Univ. 45 (2021) 497, sections 3 and 4, equations (7) to (12),
 Tables 2 to 7.
+
+Lengths l of the free section are negative inside the guide [m], mu is the column length factor [1], EI the
+bending stiffness [N m2], everywhere the arguments `free_length`, `factor` and `stiffness`.
 """
 
 from math import fabs, inf, pi, sqrt
@@ -13,24 +16,15 @@ from .numerics.brackets import at_root
 NO_LIMIT = 1e4
 
 
-def _knot(index: int) -> tuple[float, float]:
-    """Guide clearance [m] and length factor [1] of Table 3."""
-    if index == 0:
-        return 0.0, 0.70
-    if index == 1:
-        return 0.30e-3, 0.80
-    if index == 2:
-        return 0.50e-3, 0.90
-    if index == 3:
-        return 0.75e-3, 0.97
-    return 0.80e-3, 1.00
+# knots of Table 3: guide clearances [m] and length factors [1]
+CLEARANCES = (0.0, 0.30e-3, 0.50e-3, 0.75e-3, 0.80e-3)
+FACTORS = (0.70, 0.80, 0.90, 0.97, 1.00)
 
 
 def _secant(index: int) -> tuple[float, float]:
     """Width and slope of the interval that begins at a knot."""
-    left, low = _knot(index)
-    right, high = _knot(index + 1)
-    return right - left, (high - low) / (right - left)
+    width = CLEARANCES[index + 1] - CLEARANCES[index]
+    return width, (FACTORS[index + 1] - FACTORS[index]) / width
 
 
 def _end_slope(width: float, slope: float, next_width: float, next_slope: float) -> float:
@@ -61,15 +55,12 @@ def _knot_slope(index: int) -> float:
 
 
 def length_factor(clearance: float) -> float:
-    """Column length factor of the belt for a clearance in its guide, Table 3.
+    """Column length factor [1] of the belt for a clearance in its guide, Table 3.
 
     Monotone cubic (PCHIP) through the five published points; 1 (pinned at both ends) from 0.8 mm.
 
     Args:
         clearance: between belt and guide, not negative [m]
-
-    Returns:
-        length factor [1]
 
     >>> length_factor(0.3e-3), length_factor(2e-3)
     (0.8, 1.0)
@@ -78,30 +69,19 @@ def length_factor(clearance: float) -> float:
         return 1.0
     index = 0
     for knot in range(1, 4):
-        begin, _factor = _knot(knot)
-        if clearance >= begin:
+        if clearance >= CLEARANCES[knot]:
             index = knot
-    left, low = _knot(index)
-    right, high = _knot(index + 1)
-    width = right - left
-    t = (clearance - left) / width
+    width = CLEARANCES[index + 1] - CLEARANCES[index]
+    t = (clearance - CLEARANCES[index]) / width
     return (
-        low
-        + (high - low) * t * t * (3.0 - 2.0 * t)
+        FACTORS[index]
+        + (FACTORS[index + 1] - FACTORS[index]) * t * t * (3.0 - 2.0 * t)
         + width * t * (1.0 - t) * ((1.0 - t) * _knot_slope(index) - t * _knot_slope(index + 1))
     )
 
 
 def critical_force(free_length: float, factor: float, stiffness: float) -> float:
-    """Euler's critical load of the free section, `pi^2 EI / (mu l)^2`, equation (8).
-
-    Args:
-        free_length: length l of the free section, positive [m]
-        factor: column length factor mu [1]
-        stiffness: bending stiffness EI [N m2]
-
-    Returns:
-        critical load [N]
+    """Euler's critical load of the free section [N], `pi^2 EI / (mu l)^2`, equation (8).
 
     >>> round(critical_force(0.174, 0.8, 0.25), 1)
     127.3
@@ -111,18 +91,10 @@ def critical_force(free_length: float, factor: float, stiffness: float) -> float
 
 
 def margin(free_length: float, axial_force: float, factor: float, stiffness: float) -> float:
-    """Stability margin `1 - F / F_cr`, F_cr from (8): finite for every load, negative once the belt buckles.
+    """Stability margin `1 - F / F_cr` [1], F_cr from (8): finite for every load, negative once it buckles.
 
-    It is 1 while the belt is inside its guide and above 1 under tension.
-
-    Args:
-        free_length: length of the free section; negative inside the guide [m]
-        axial_force: compression F of the belt; negative for tension [N]
-        factor: column length factor [1]
-        stiffness: bending stiffness [N m2]
-
-    Returns:
-        margin [1]
+    It is 1 while the belt is inside its guide and above 1 under tension. The force is negative for
+    tension [N].
 
     >>> margin(-0.1, 50.0, 0.8, 0.25)
     1.0
@@ -134,19 +106,17 @@ def margin(free_length: float, axial_force: float, factor: float, stiffness: flo
 
 
 def weft_load(tension: float, velocity: float, taker: bool) -> float:
-    """Compression of the belt by the weft that its head carries, F_z of equation (12) with its direction.
+    """Compression of the belt by the weft that its head carries [N]: F_z of (12) with its direction.
 
     The weft pulls back against the motion of the head. A giver carries it on the way in, pushed by its belt,
     and returns empty; a taker goes in empty and draws the weft out, pulled by its belt. The source describes
-    both in section 1, but counts the tension as compression for either head.
+    both in section 1, but counts the tension as compression for either head. It is negative where the weft
+    relieves the belt.
 
     Args:
         tension: of the weft [N]
         velocity: of the head, positive on its way in [m/s]
         taker: whether the head takes the weft over, instead of bringing it
-
-    Returns:
-        compression [N], negative where the weft relieves the belt
 
     >>> weft_load(2.0, 10.0, False), weft_load(2.0, -10.0, False)
     (2.0, 0.0)
@@ -161,22 +131,16 @@ def weft_load(tension: float, velocity: float, taker: bool) -> float:
 def speed_limit(
     free_length: float, slope: float, factor: float, stiffness: float, mass: float, tension: float
 ) -> float:
-    """Shaft speed at which the belt would just buckle at this angle, equations (9) and (12).
+    """Shaft speed [rad/s] at which the belt would just buckle at this angle, equations (9) and (12).
 
     `sqrt((F_cr - F_z) / (m s''))`; without tension `(pi / (mu l)) sqrt(EI / (m s''))`. It is
     `NO_LIMIT` inside the guide and where the head does not push the belt, and 0 where the weft tension
     alone buckles it.
 
     Args:
-        free_length: length l of the free section [m]
         slope: second derivative s'' of the travel by the shaft angle [m]
-        factor: column length factor [1]
-        stiffness: bending stiffness [N m2]
         mass: of the head with the rigid section of the belt [kg]
         tension: compression by the weft F_z [N]; negative where the weft relieves the belt
-
-    Returns:
-        shaft speed [rad/s]
     """
     if free_length <= 0.0 or slope <= 0.0:
         return NO_LIMIT
@@ -191,10 +155,7 @@ def speed_limit(
 
 
 def complete_elliptic(modulus: float) -> float:
-    """Complete elliptic integral of the first kind K(k), by the arithmetic-geometric mean.
-
-    Args:
-        modulus: k, 0 to below 1 [1]
+    """Complete elliptic integral of the first kind K(k), 0 <= k < 1, by the arithmetic-geometric mean.
 
     >>> round(complete_elliptic(0.0) * 2 / pi, 12)
     1.0
@@ -224,17 +185,15 @@ def elliptic_slope(modulus: float) -> float:
 
 
 def elastica_deflection(load_ratio: float, free_length: float) -> float:
-    """Largest deflection of a buckled pinned column, from the exact elastica instead of (11).
+    """Largest deflection of a buckled pinned column [m], from the exact elastica instead of (11).
 
     `F / F_cr = (2 K(k) / pi)^2` gives the modulus k by bisection, then `deflection / l = k / K(k)`.
-    Erratum: the printed (11) gives half of it, 4.2 mm, where the paper's own result is 8 mm.
+    Erratum: the printed (11) gives half of it, 4.2 mm, where the paper's own result is 8 mm. It is 0 up to
+    the critical load.
 
     Args:
         load_ratio: compression over critical load [1]
         free_length: length l of the free section [m]
-
-    Returns:
-        deflection [m], 0 up to the critical load
 
     >>> round(elastica_deflection((686 / 685) ** 2, 0.174) * 1000, 1)
     8.4
@@ -264,13 +223,9 @@ LARGEST_BEND = 0.4031401897056502
 
 
 def bent_load_ratio(bend: float) -> float:
-    """Load ratio at which a pinned column first has a deflection: `elastica_deflection` inverted.
+    """Load ratio [1] at which a pinned column first has a deflection, `bend` times its length.
 
-    Args:
-        bend: deflection over the length of the column [1]
-
-    Returns:
-        load ratio [1]: 1 without a deflection; `inf` from 0.4031 on, which no load gives
+    `elastica_deflection` inverted: 1 without a deflection, `inf` from 0.4031 on, which no load gives.
 
     >>> round(bent_load_ratio(8.4e-3 / 0.174), 4)  # (686 / 685)^2 = 1.0029
     1.0029

@@ -78,10 +78,6 @@ def bent_belt(at: Instant, ends: Ends, q: list[float], v: list[float]) -> Bendin
 
     With s = u_X and c = sqrt(1 - s^2): curvature u_XX / c, shortening 1 - c. What is of second order in s is
     exact, in bending that of the modes alone: see `end_bending`. The rest is summed over places.
-
-    Args:
-        at, ends: an instant of the belt, and its end shapes then
-        q, v: modes and their rates [m, m/s]
     """
     length = at.length
     over = 1.0 / length
@@ -291,14 +287,11 @@ def by_modes(
 
 
 def end_shortening(over: float, ends: Ends) -> tuple[float, float, float]:
-    """Shortening by the end shapes to the second order, and its rates while L and their own rates stay.
+    """Shortening by the end shapes to the second order [m], and its rates while L and their own rates stay.
 
     Args:
         over: 1 / L [1/m]
         ends: amplitudes and their rates
-
-    Returns:
-        shortening [m], rate [m/s], second rate [m/s2]
     """
     by_guide = over * (SQUARE * ends.guide + CROSS * ends.head)
     by_head = over * (SQUARE * ends.head + CROSS * ends.guide)

@@ -74,12 +74,8 @@ def end_coupling(
     """Forces on the modes by the inertia of the end shapes on a belt that moves through its guide.
 
     Both ways: the end shapes drive the modes, and clamped ends hold them against what the modes do to them.
-    With them are those of the line between guide and head, see `tilt_forces`.
-
-    Args:
-        belt, at, ends: the belt, an instant, and its end shapes then
-        thrown: `rho V^2 / L` [kg/s2]
-        q, v: modes and their rates [m, m/s]
+    With them are those of the line between guide and head, see `tilt_forces`. `thrown` is `rho V^2 / L`
+    [kg/s2].
     """
     twice = 2.0 * belt.mass * at.velocity
     pushed = belt.mass * at.acceleration

@@ -254,9 +254,7 @@ def end_motion(
     Args:
         free: of `end_amplitudes`
         velocity, acceleration: rates V and A of the length [m/s, m/s2]
-        clamped: which ends are clamped
         turn, turn_by_length: slope at the guide times L [m], and its rate by L [1]
-        q, v: modes and their rates [m, m/s]
     """
     square = velocity * velocity
     if clamped == 0:
@@ -322,15 +320,14 @@ def turning(turn_by_length: float, free: FreeEnds) -> tuple[float, float]:
 def end_bending(
     length: float, stiffness: float, guide_growth: float, head_growth: float, d: float, k: float
 ) -> tuple[float, float]:
-    """Bending energy of the end shapes beyond those of the bow, and its rate by L.
+    """Bending energy of the end shapes beyond those of the bow [J], and its rate by L [N].
+
+    The energy is `3 B / L^3 [OWN (d^2 + k^2) + 2 OTHER d k]`.
 
     Args:
         length, stiffness: L [m], B [N m2]
         guide_growth, head_growth: of `turning` [1]
         d, k: of `end_motion` [m]
-
-    Returns:
-        energy `3 B / L^3 [OWN (d^2 + k^2) + 2 OTHER d k]` [J], its rate [N]
     """
     moment = 6.0 * stiffness / (length * length * length)
     energy = 0.5 * moment * (OWN * (d * d + k * k) + 2.0 * OTHER * d * k)

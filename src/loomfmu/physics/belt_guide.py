@@ -100,7 +100,6 @@ def before_switch(
     """Share of an integration step after which contact in the guide changes, 1 if it does not.
 
     Args:
-        belt, contact: the belt, and the side on which it leans
         step: duration [s]
         at, q, v: start of the step, with modes and rates
         after, after_q, after_v: its end

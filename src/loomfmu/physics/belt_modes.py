@@ -51,7 +51,6 @@ def weighed(first: float, even: float, square: float, a: list[float]) -> list[fl
         first: constant of the diagonal: 0 for x, 1/4 for x^2
         even: share of the terms with even m + n: 0 for x, 1 for x^2
         square: share of `m^2` in the diagonal: pi^2/4 for x, pi^2/6 for x^2
-        a: modes
 
     >>> weighed(0.25, 1.0, 0.0, [0.0, 9.0, 0.0, 0.0, 0.0, 0.0])[:2]
     [-20.0, 2.25]
@@ -145,19 +144,14 @@ def harmonics(
 
 
 def bow_mode(number: int, bow: Bow, length: float, cosine: float, sine: float) -> tuple[float, float, float]:
-    """Moment of the belt's own bow on a mode, over its bending stiffness, and its rates by the free length.
+    """Moment of the belt's own bow on a mode, over its stiffness [1/m2], and two rates by the free length.
 
     `int bow'' (sin(n pi X / L))'' dX` for a belt that is crooked as `height sin(pi X / half_wave)` from the
     head on, and takes its bow along.
 
     Args:
-        number: n of the mode
-        bow: of the belt
         length: L of the free part [m]
         cosine, sine: of `pi L / half_wave`
-
-    Returns:
-        moment [1/m2], its rate [1/m3], its second rate [1/m4]
 
     >>> from math import pi
     >>> round(bow_mode(1, Bow(1, 1.0, 1.0), 1.0, -1.0, 0.0)[0] - pi**4 / 2, 12)
@@ -189,32 +183,23 @@ def bow_mode(number: int, bow: Bow, length: float, cosine: float, sine: float) -
     )
 
 
-def bow_at(number: int, bow: Bow, length: float, cosine: float, sine: float) -> tuple[float, float]:
-    """As `bow_mode`, of the belt's own bow (1), or of one of the span, `height sin(pi x / L)` (2).
-
-    >>> bow_at(2, Bow(2, 1.0, 1.0), 1.0, -1.0, 0.0)
-    (0.0, 0.0)
-    """
-    if bow.of == 1:
-        moment, rate, _second = bow_mode(number, bow, length, cosine, sine)
-        return moment, rate
-    if number > 1:
-        return 0.0, 0.0
-    square = pi * pi / length
-    moment = 0.5 * bow.height * square * square / length
-    return moment, -3.0 * moment / length
-
-
 def bow_forces(bow: Bow, length: float) -> tuple[list[float], list[float]]:
     """Moments of the bow on all modes, and their rates by the free length; see `bow_mode`.
 
-    >>> bow_forces(Bow(2, 1.0, 1.0), 1.0)[0][0] == bow_at(1, Bow(2, 1.0, 1.0), 1.0, -1.0, 0.0)[0]
-    True
+    A bow of the span (2), `height sin(pi x / L)`, has one on the first mode alone.
+
+    >>> [[round(each[n] / pi**4, 12) for n in (0, 1)] for each in bow_forces(Bow(2, 1.0, 1.0), 1.0)]
+    [[0.5, 0.0], [-1.5, 0.0]]
     """
-    cosine = cos(pi * length / bow.half_wave)
-    sine = sin(pi * length / bow.half_wave)
     moments = [0.0] * 6
     rates = [0.0] * 6
+    if bow.of != 1:
+        square = pi * pi / length
+        moments[0] = 0.5 * bow.height * square * square / length
+        rates[0] = -3.0 * moments[0] / length
+        return moments, rates
+    cosine = cos(pi * length / bow.half_wave)
+    sine = sin(pi * length / bow.half_wave)
     for n in range(6):
-        moments[n], rates[n] = bow_at(n + 1, bow, length, cosine, sine)
+        moments[n], rates[n], _second = bow_mode(n + 1, bow, length, cosine, sine)
     return moments, rates

@@ -27,13 +27,7 @@ def free_turn(belt: Belt, length: float) -> float:
 
 
 def ends_at(belt: Belt, at: Instant, contact: int, q: list[float], v: list[float]) -> Ends:
-    """The end shapes at an instant.
-
-    Args:
-        belt, at: the belt, and an instant of it
-        contact: side of its guide on which it leans, 1 or -1; 0 while it turns freely there
-        q, v: modes and their rates [m, m/s]
-    """
+    """The end shapes at an instant."""
     clamped = (1 if contact != 0 else 0) + (2 if belt.guided else 0)
     turn = contact * free_turn(belt, at.length)
     by_length = contact * belt.clearance / belt.guide_length
@@ -43,7 +37,7 @@ def ends_at(belt: Belt, at: Instant, contact: int, q: list[float], v: list[float
 def accelerations(
     belt: Belt, at: Instant, contact: int, q: list[float], v: list[float]
 ) -> tuple[list[float], float]:
-    """Second rates of the modes, and the compression P0 of the belt at the head.
+    """Second rates of the modes [m/s2], and the compression P0 of the belt at the head [N].
 
         M q'' = 2 rho V G q' + [rho A (G + J) + rho V^2/L H] q - c (L q'/2 - V G q) + B (f + b) + e
                 + P0 g
@@ -52,12 +46,6 @@ def accelerations(
     G is `carried_along`, J and H are `weighed` by x and x^2, f and g are of `bent_belt`, b is of
     `bow_forces`, e is of `end_coupling` and the bending of the end shapes; S is the shortening, by which the
     head lags behind its drive.
-
-    Args:
-        belt .. v: as for `ends_at`
-
-    Returns:
-        second rates [m/s2], compression at the head [N]
     """
     length = at.length
     stiffness = belt.stiffness
@@ -106,19 +94,15 @@ def accelerations(
 def energy_and_powers(
     belt: Belt, at: Instant, contact: int, q: list[float], v: list[float], a: list[float], load: float
 ) -> tuple[float, float, float, float]:
-    """Energy of the motion across the belt, and the powers that change it.
+    """Energy of the motion across the belt [J], and powers of the compression, at the guide, and lost [W].
 
     The energy is that of u_t, of bending against the straight belt, and of the lag of the head. It grows by
     the compression's work on the shortening, and by what the guide exit, an end that moves along the belt,
     puts in: `V [d/dt(dT/dV) - dT/dL + dU/dL - P0 dS/dL]`, and the inertia of the end shapes.
 
     Args:
-        belt .. v: as for `ends_at`
         a: second rates of the modes [m/s2]
         load: compression at the head P0 [N]
-
-    Returns:
-        energy [J], power of the compression, power at the guide, power lost by damping [W]
     """
     velocity = at.velocity
     x = carried_along(q)

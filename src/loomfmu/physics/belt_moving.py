@@ -1,4 +1,9 @@
-"""A belt in motion as its model is given it: what it is made of, its path over a step, an instant of it."""
+"""A belt in motion as its model is given it: what it is made of, its path over a step, an instant of it.
+
+In all modules of the belt's motion `belt` is what it is made of, `at` an instant of it, `ends` its end
+shapes then, q and v its modes and their rates [m, m/s], and `contact` the side of its guide on which it
+leans, 1 or -1; 0 while it turns freely there.
+"""
 
 from dataclasses import dataclass
 

@@ -25,7 +25,6 @@ def rest(
     """Look for the shape that only follows the growth of the free length, from a straight belt on.
 
     Args:
-        belt: the belt
         length, velocity, acceleration, tension: L, V, A and the weft's load [m, m/s, m/s2, N]
         q, v: get its modes and their rates; zero where it leaves the belt
 

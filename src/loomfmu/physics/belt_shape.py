@@ -29,12 +29,9 @@ def shape_at(x: float, a: list[float], end: float, head: float) -> tuple[float, 
 def shape_extremes(
     length: float, a: list[float], end: float, head: float
 ) -> tuple[float, float, float, float]:
-    """Place where the belt is farthest from its line, how far, its largest slope and curvature.
+    """Place where the belt is farthest [1], how far [m], sine of its largest slope, curvature [1/m].
 
     The place is found to rounding; slope and curvature are the largest of 25 places.
-
-    Returns:
-        x [1], deflection there, signed [m], sine of the slope [1], curvature [1/m]
 
     >>> [round(each, 12) for each in shape_extremes(1.0, [0.0, 0.1, 0.0, 0.0, 0.0, 0.0], 0.0, 0.0)][:3]
     [0.25, 0.1, 0.628318530718]

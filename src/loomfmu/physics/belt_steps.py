@@ -87,8 +87,6 @@ def advance(
     """Find the accelerations of a step, and the compression at its stages.
 
     Args:
-        belt, stages, contact: the belt, the step, and the side of its guide on which it leans
-        q, v: modes and their rates at the start [m, m/s]
         a: accelerations at all stages, first as foreseen, then as found [m/s2]
         loads: get the compression at the stages [N]
 
@@ -171,7 +169,6 @@ def correct(
     """Correct the accelerations of all stages for what they are off by; how far that moves the modes [m].
 
     Args:
-        belt, contact: the belt, and the side of its guide on which it leans
         at, square: middle of the step, square of its duration [s2]
         odd_yield, even_yield: of `yielding`, where an end is clamped
         off: what the accelerations are off by, less then the share of the moments at the clamped ends [m/s2]

@@ -2,21 +2,21 @@
 
 Source: Zhu and Zhou, "Restraint load characteristics of rapier loom carbon fiber belt wrapped rapier
 wheel", Light Industry Machinery (2021) no. 5, 20, sections 2 and 3, equations (1) to (8), Tables 1 to 3.
+
+D is the bottom `diameter` of the rapier wheel [m], c the `clearance` between block and belt, positive [m],
+and EI the bending `stiffness` of the belt [N m2].
 """
 
 from math import sqrt
 
 
 def cantilever_stiffness(force: float, length: float, deflection: float) -> float:
-    """Bending stiffness of a belt from a cantilever test, `EI = F l^3 / (3 v)`, equation (2).
+    """Bending stiffness of a belt from a cantilever test [N m2], `EI = F l^3 / (3 v)`, equation (2).
 
     Args:
         force: at the free end [N]
         length: from the clamp to the force [m]
         deflection: of the free end, towards the force [m]
-
-    Returns:
-        bending stiffness EI [N m2]
 
     Valid for small deflections; the published tests go up to a quarter of the length.
 
@@ -27,17 +27,10 @@ def cantilever_stiffness(force: float, length: float, deflection: float) -> floa
 
 
 def lever_arm(diameter: float, clearance: float) -> float:
-    """Lever arm of the restraint load, `a = 3 sqrt(D c + c^2)`, equation (7).
+    """Lever arm of the restraint load [m], `a = 3 sqrt(D c + c^2)`, equation (7).
 
     A cantilever's deflection over its end slope, `2 a / 3`, is set equal to the chord that the clearance
     cuts off, `2 sqrt((D/2 + c)^2 - (D/2)^2)`, (5) and (6).
-
-    Args:
-        diameter: bottom diameter D of the rapier wheel [m]
-        clearance: c between block and belt, positive [m]
-
-    Returns:
-        lever arm [m]
 
     Valid while the end slope `a / D` is small: the source replaces its tangent, at 0.2 1.4 % larger, by the
     angle.
@@ -49,14 +42,7 @@ def lever_arm(diameter: float, clearance: float) -> float:
 
 
 def bending_moment(stiffness: float, diameter: float) -> float:
-    """Moment that bends the belt to the curvature of the wheel, `M = EI / rho = 2 EI / D`, equation (3).
-
-    Args:
-        stiffness: bending stiffness EI [N m2]
-        diameter: bottom diameter D of the rapier wheel [m]
-
-    Returns:
-        moment [N m]
+    """Moment that bends the belt to the curvature of the wheel [N m], `M = EI / rho = 2 EI / D`, (3).
 
     >>> bending_moment(0.25, 0.4)
     1.25
@@ -65,18 +51,10 @@ def bending_moment(stiffness: float, diameter: float) -> float:
 
 
 def restraint_load(stiffness: float, diameter: float, clearance: float) -> float:
-    """Load with which each block holds the belt on the wheel, `F = 2 EI / (D a)`, equations (4) and (8).
+    """Load with which each block holds the belt on the wheel [N], `F = 2 EI / (D a)`, equations (4) and (8).
 
     It does not depend on the wrap angle. Erratum: Table 3 prints 54.81 N for 430.0 mm and 0.1 mm, where the
     equation gives 59.10 N.
-
-    Args:
-        stiffness: bending stiffness EI [N m2]
-        diameter: bottom diameter D of the rapier wheel [m]
-        clearance: c between block and belt, positive [m]
-
-    Returns:
-        load [N]
 
     >>> round(restraint_load(0.25, 0.3955, 0.3e-3), 2)
     38.67
@@ -85,16 +63,9 @@ def restraint_load(stiffness: float, diameter: float, clearance: float) -> float
 
 
 def bending_strain(thickness: float, diameter: float) -> float:
-    """Strain of the belt's outer face on its wheel, `e = t / (D + t)`.
+    """Strain of the outer face of a belt of `thickness` t [m] on its wheel [1], `e = t / (D + t)`.
 
     The face is t / 2 from the belt's middle, which lies on a radius of (D + t) / 2.
-
-    Args:
-        thickness: t of the belt [m]
-        diameter: bottom diameter D of the rapier wheel [m]
-
-    Returns:
-        strain [1]
 
     >>> round(100 * bending_strain(1.35e-3, 0.397), 3)  # per cent
     0.339

@@ -14,16 +14,15 @@ from .numerics.motion import moved_on
 
 
 def design_stiffness(load: float, mass: float, acceleration: float, travel: float) -> float:
-    """Stiffness of one of the four springs, `c = (T - m a) / (4 S)`, equation (5.6).
+    """Stiffness of one of the four springs [N/m], `c = (T - m a) / (4 S)`, equation (5.6).
+
+    Erratum: the source prints 59.6 N/mm for what is 5.96 N/mm.
 
     Args:
         load: largest load T of the warp on the frame [N]
         mass: of the carrier m [kg]
         acceleration: of the frame a [m/s2]
         travel: of the carrier in the frame S [m]
-
-    Returns:
-        stiffness [N/m]; erratum: the source prints 59.6 N/mm for what is 5.96 N/mm
 
     >>> round(design_stiffness(957.6, 15.0, 40.0, 0.015))
     5960
@@ -32,17 +31,12 @@ def design_stiffness(load: float, mass: float, acceleration: float, travel: floa
 
 
 def stop_damping_ratio(restitution: float) -> float:
-    """Damping ratio of a stop that returns a mass with a given share of its speed.
+    """Damping ratio r, 0 to 1 [1], of a stop that returns a mass with a given share of its speed.
 
     A spring and dashpot that act only in compression let go when their force is zero, after the time
     `(pi - atan2(2 r s, 1 - 2 r^2)) / (s w)`, `s = sqrt(1 - r^2)`; the share of the speed left is
     `exp(-r w time)`. Solved for r by bisection. See Schwager and Poeschel, Granular Matter 9 (2007) 465.
-
-    Args:
-        restitution: speed after over speed before the contact, 0.15 to 1 [1]
-
-    Returns:
-        damping ratio r, 0 to 1 [1]
+    The restitution is the speed after a contact over that before it, 0.15 to 1 [1].
 
     >>> stop_damping_ratio(1.0) < 1e-12, round(stop_damping_ratio(0.5), 4)
     (True, 0.2553)
@@ -183,16 +177,13 @@ def load_at(piece: Piece, time: float) -> float:
 def power_of_frame(
     mass: float, preload: float, swing: Swing, velocity: float, acceleration: float, jerk: float
 ) -> tuple[float, float, float]:
-    """Power of the frame on its carrier, `-m (k z + c z' - p) v`, and its first and second rate.
+    """Power of the frame on its carrier [W], `-m (k z + c z' - p) v`, and its first and second rate.
 
     Args:
         mass: of the carrier m [kg]
         preload: p, what a stop pushes back at z = 0 [m/s2]
         swing: of the carrier in its frame, at its start
         velocity, acceleration, jerk: of the frame [m/s, m/s2, m/s3]
-
-    Returns:
-        power [W], its rates [W/s, W/s2]
 
     >>> at_rest = Swing(0.5, 0.0, 3.0, 0.0, 1.5, 0.0, 0.0, 0.0)  # in the moving frame
     >>> power_of_frame(2.0, 0.0, at_rest, 4.0, 1.0, 0.0)

@@ -91,13 +91,12 @@ def larger(one: float, other: float) -> float:
 def safe_stride(value: float, slope: float, bend: float) -> float:
     """The longest time for which `value + slope t + bend t^2 / 2` stays below 0, however it bends within.
 
+    It is 1e300 if that never gets there.
+
     Args:
         value: up to 0
         slope: its first derivative
         bend: bound of its second one, not negative
-
-    Returns:
-        time, 1e300 if it never gets there
 
     >>> safe_stride(-2.0, 0.0, 1.0), safe_stride(0.0, -1.0, 1.0), safe_stride(-1.0, 0.0, 0.0)
     (2.0, 2.0, 1e+300)
@@ -113,7 +112,7 @@ def safe_stride(value: float, slope: float, bend: float) -> float:
 def first_change(
     gauge: Gauge, swing: Swing, sign: float, bend: float, start: float, duration: float
 ) -> float:
-    """Time at which a gauge first leaves a sign; on the far side of the zero, to rounding.
+    """Time [s] at which a gauge first leaves a sign, beyond the zero, to rounding; -1 if it keeps its sign.
 
     Goes from stride to stride, each so short that no zero can lie within it, whatever the motion: so two
     changes close together are not missed as they are where the ends of a piece alone are compared.
@@ -123,9 +122,6 @@ def first_change(
         sign: -1 or 1, what it leaves
         bend: bound of the second derivative of what is followed, up to the end
         start, duration: from and to these times [s]
-
-    Returns:
-        time [s], or -1 if it keeps its sign
 
     >>> # the lower of two zeros of 0.02 - t (0.3 - t), where both ends are positive
     >>> motion = Swing(0.02, -0.3, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0)

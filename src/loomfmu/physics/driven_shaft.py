@@ -60,15 +60,12 @@ def driven_motion(
 def work_of(
     start: float, rise: float, bulge: float, duration: float, mean: float, second: float, third: float
 ) -> float:
-    """Work of a torque `T0 + dT u + 6 B u (1 - u)` over a step, by repeated integration by parts.
+    """Work of a torque `T0 + dT u + 6 B u (1 - u)` over a step [J], by repeated integration by parts.
 
     Args:
         start, rise, bulge: T0, dT and B [N m]
         duration: of the step [s]
         mean, second, third: means of the velocity, of (1 - u) and of (1 - u)^2 / 2 times it [rad/s]
-
-    Returns:
-        work [J]
 
     >>> work_of(3.0, 0.0, 0.0, 2.0, 5.0, 2.5, 0.8333333333333334)  # 3 N m over 10 rad
     30.0
@@ -87,7 +84,7 @@ def bulge_for(
     inertia: float,
     slope: float,
 ) -> float:
-    """The bulge with which torques do a known work over a step.
+    """The bulge [N m] with which torques do a known work over a step.
 
     The torques lie on a parabola then, whose ends and whose work are right. That makes the motion right to
     fourth order in the step, and leaves no error in the energy.
@@ -98,13 +95,7 @@ def bulge_for(
     Args:
         work: of the torques over the step [J]
         start, rise: of these torques [N m]
-        velocity: at the start of the step [rad/s]
         net, net_rise: net torque at the start of the step, and the rise of the whole load [N m]
-        duration: of the step [s]
-        inertia, slope: see `driven_motion`
-
-    Returns:
-        bulge [N m]
 
     >>> bulge_for(44.0, 3.0, 2.0, 5.0, 0.0, 0.0, 2.0, 1e300, 0.0)  # 4 N m over 10 rad, and 4 J more
     0.4
@@ -136,9 +127,6 @@ def summed(value: float, rest: float, change: float) -> tuple[float, float]:
         value: so far
         rest: rounding error so far, at first 0
         change: what is added
-
-    Returns:
-        value, rest
 
     >>> summed(1.0, 0.0, 1e-17)
     (1.0, 1e-17)

@@ -1,22 +1,17 @@
 """Heald frame: motion from the rotor's angle, and the pattern of raised frames.
 
-Source: Korolev, thesis on rotary dobbies (Moscow), sections 2.5, 3.1 and 3.6.
+Source: Korolev, thesis on rotary dobbies (Moscow), sections 2.5, 3.1 and 3.6. S is the `angle` of
+the rotor [rad].
 """
 
 from math import cos, floor, pi, sin
 
 
 def lift_fraction(angle: float, velocity: float, acceleration: float) -> tuple[float, float, float]:
-    """Share of the stroke of a frame that changes at every pick: `(1 - cos(S/2)) / 2`.
+    """Share of the stroke of a frame that changes at every pick [1], `(1 - cos(S/2)) / 2`, and its two rates.
 
     The frame's crank makes half a turn per turn of the rotor, section 3.1. Computed as `sin(S/4)^2`, so that
     nothing cancels near the rest position.
-
-    Args:
-        angle, velocity, acceleration: of the rotor [rad, rad/s, rad/s2]
-
-    Returns:
-        share [1], its rate [1/s] and second rate [1/s2]
 
     >>> lift_fraction(0.0, 10.0, 0.0)
     (0.0, 0.0, 12.5)
@@ -32,13 +27,7 @@ def lift_fraction(angle: float, velocity: float, acceleration: float) -> tuple[f
 
 
 def crank_slope(angle: float) -> float:
-    """Slope of `lift_fraction` by the rotor's angle, `sin(S/2) / 4`: what turns a force into a torque.
-
-    Args:
-        angle: of the rotor S [rad]
-
-    Returns:
-        slope [1/rad]
+    """Slope of `lift_fraction` by the rotor's angle [1/rad], `sin(S/2) / 4`: turns a force into a torque.
 
     >>> crank_slope(pi), crank_slope(0.0)
     (0.25, 0.0)

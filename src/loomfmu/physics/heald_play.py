@@ -48,7 +48,7 @@ def clear_stride(beyond: float, rate: float, acceleration: float, most: float, m
 def until_bar(
     position: float, rate: float, q0: float, q1: float, q2: float, q3: float, reach: float, duration: float
 ) -> tuple[float, int]:
-    """Return the time at which a heald in flight first meets a bar, and which: 1 upper, -1 lower, 0 none.
+    """Return the time [s] at which a heald in flight first meets a bar, and which: 1 upper, -1 lower, 0 none.
 
     Goes from stride to stride, each so short that no bar can be met within it, however it moves.
 
@@ -57,9 +57,6 @@ def until_bar(
         q0 .. q3: w'' as a cubic in time
         reach: of w to either side [m]
         duration: how far to look [s]
-
-    Returns:
-        time [s], bar
 
     >>> until_bar(-1.0, 2.0, 0.0, 0.0, 0.0, 0.0, 1.0, 2.0), until_bar(0.0, 0.1, 0.0, 0.0, 0.0, 0.0, 1.0, 2.0)
     ((1.0, 1), (2.0, 0))

@@ -72,7 +72,7 @@ def force_after(
 
 
 def warp_load(warp: Warp, force: float, height: float, velocity: float) -> tuple[float, float]:
-    """Load of the threads on their eyes, positive upwards, and its rate; none while they are slack.
+    """Load of the threads on their eyes [N], positive upwards, and its rate [N/s]; none while they are slack.
 
     `L = -(T0 + F) s`, `L' = -F' s - (T0 + F) s' h'`, with `F' = b (s h' + n x) - r F`.
 
@@ -80,9 +80,6 @@ def warp_load(warp: Warp, force: float, height: float, velocity: float) -> tuple
         warp: the threads
         force: F of all threads [N]
         height, velocity: of the eyes above the warp line [m, m/s]
-
-    Returns:
-        load [N], rate [N/s]
 
     >>> warp_load(Warp(1.0, 10.0, 0.0, 0.0, 0.4, 0.4), 4.0, 0.3, 0.0)
     (-6.0, -0.0)

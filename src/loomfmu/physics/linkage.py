@@ -23,7 +23,7 @@ def closed_acos(ratio: float) -> float:
 
 
 def spherical_rocker(theta: float, rocker: float, cone: float) -> tuple[float, float, float]:
-    """Angle of the rocker of a spherical crank-rocker and its first two derivatives, equation (1).
+    """Rocker angle a [rad] of a spherical crank-rocker, and da/dt and d2a/dt2 [1], equation (1).
 
     `cos g - cos b cos a + sin b sin a cos t = 0`, solved for `a` in closed form and differentiated
     implicitly, so that the derivatives are exact.
@@ -32,9 +32,6 @@ def spherical_rocker(theta: float, rocker: float, cone: float) -> tuple[float, f
         theta: crank angle t [rad]
         rocker: arc g between the axes AC and BC [rad]
         cone: half-angle b of the crank's cone, AC to OC [rad]
-
-    Returns:
-        rocker angle a [rad], da/dt [1], d2a/dt2 [1]
 
     Valid where `|cos g| <= sqrt(cos(b)^2 + sin(b)^2 cos(t)^2)`: see `spherical_margin`.
 
@@ -80,7 +77,7 @@ def four_bar(
     pivot_y: float,
     assembly: int,
 ) -> tuple[float, float, float]:
-    """Output angle of a planar four-bar C-D-K-G and its derivatives, equation (3).
+    """Output angle of a planar four-bar C-D-K-G [rad], its derivatives by the shaft angle [1], equation (3).
 
     D turns about the origin, K about the pivot G; the coupler DK joins them. The angle follows from the
     triangle D-K-G, its derivatives from `|D - K|^2 = const`.
@@ -90,9 +87,6 @@ def four_bar(
         crank, coupler, output: lengths DC, DK, KG [m]
         pivot_x, pivot_y: position of G [m]
         assembly: +1 or -1, which of the two triangles
-
-    Returns:
-        output angle [rad] and its first and second derivative by the shaft angle [1]
 
     >>> from math import pi
     >>> x, x1, x2 = four_bar(pi / 2, 1.0, 0.0, 0.1, 0.2, 0.1, 0.2, 0.0, -1)  # a parallelogram
@@ -181,18 +175,12 @@ def weft_motion(
     pivot_y: float,
     assembly: int,
 ) -> tuple[float, float, float]:
-    """Angle of the sector gear and its derivatives by the crank angle, equations (1) to (4).
+    """Angle of the sector gear [rad] and its derivatives by the crank angle [1], equations (1) to (4).
 
     Args:
         theta: crank angle, shaft angle plus phase [rad]
-        rocker, cone: the spherical linkage, see `spherical_rocker` [rad]
         offset: angle between the rocker's arms BC and DC [rad]
         planar: whether a four-bar follows; otherwise the rocker itself is the sector gear
-        crank, coupler, output, pivot_x, pivot_y: the four-bar, see `four_bar` [m]
-        assembly: of the four-bar, +1 or -1
-
-    Returns:
-        angle [rad], first and second derivative [1]
     """
     alpha, first, second = spherical_rocker(theta, rocker, cone)
     if not planar:

@@ -2,6 +2,12 @@
 
 Source: Korolev, thesis on rotary dobbies (Moscow), section 3.6.1, equations (3.30) to (3.48), in the
 corrected form.
+
+Symbols: M and I are `mass` and `inertia` of a pawl [kg, kg m2], b and c its `length` and `width` [m], of
+which the `rest_share` c0 / c stays outside the slot [1]; T is the `span` of shaft angle that an engagement
+takes and x the angle since it began [rad], phi0 the whole `turn` of the pawl and phi what it has `turned`
+[rad]; P is the `force` of its spring at the end of the turn, its preload [N], C the spring's `stiffness`
+[N/m], R its lever `arm` [m].
 """
 
 from math import asin, cos, pi, sin, sqrt
@@ -11,14 +17,9 @@ UNLIMITED_TIME = 1e6
 
 
 def pawl_inertia(mass: float, length: float, width: float) -> float:
-    """Moment of inertia of a pawl about its middle, `I = M (b^2 + c^2) / 12`, equation (3.31).
+    """Moment of inertia of a pawl about its middle [kg m2], `I = M (b^2 + c^2) / 12`, equation (3.31).
 
-    Args:
-        mass: M [kg]
-        length, width: b and c [m]
-
-    Returns:
-        moment of inertia [kg m2]; erratum: 375e-6 is also printed as 3750e-6
+    Erratum: 375e-6 is also printed as 3750e-6.
 
     >>> round(1e6 * pawl_inertia(0.170, 0.16, 0.03), 1)
     375.4
@@ -27,14 +28,7 @@ def pawl_inertia(mass: float, length: float, width: float) -> float:
 
 
 def pawl_turn(length: float, width: float, rest_share: float) -> float:
-    """Turn of a pawl from one disc to the other, `phi0 = (c + c0) / b`, equation (3.30).
-
-    Args:
-        length, width: b and c [m]
-        rest_share: c0 / c, share of its width that stays outside the slot [1]
-
-    Returns:
-        turn [rad]
+    """Turn of a pawl from one disc to the other [rad], `phi0 = (c + c0) / b`, equation (3.30).
 
     >>> round(pawl_turn(0.16, 0.03, 0.15), 3)
     0.216
@@ -43,18 +37,10 @@ def pawl_turn(length: float, width: float, rest_share: float) -> float:
 
 
 def engagement(x: float, span: float, turn: float) -> tuple[float, float, float]:
-    """Turn of the pawl over the shaft angle: `phi0 (x/T - sin(2 pi x/T) / (2 pi))`, equations (3.33), (3.34).
+    """Turn of the pawl [rad], `phi0 (x/T - sin(2 pi x/T) / (2 pi))`, two derivatives by x, (3.33), (3.34).
 
-    The pawl is at rest before and after; velocity and acceleration are continuous.
-
-    Args:
-        x: shaft angle since the engagement began [rad]
-        span: shaft angle T that it takes [rad]
-        turn: whole turn phi0 [rad]
-
-    Returns:
-        turn [rad] and its first and second derivative by the shaft angle [1, 1/rad]; erratum: (3.33)
-        prints 1/T before the sine
+    The pawl is at rest before and after; velocity and acceleration are continuous. Erratum: (3.33) prints 1/T
+    before the sine.
 
     >>> engagement(0.0, 1.3, 0.2), engagement(1.3, 1.3, 0.2)[0]
     ((0.0, 0.0, 0.0), 0.2)
@@ -73,13 +59,9 @@ def engagement(x: float, span: float, turn: float) -> tuple[float, float, float]
 
 
 def largest_bend(span: float, turn: float) -> float:
-    """Largest second derivative of `engagement` by the shaft angle, `2 pi phi0 / T^2`, equation (3.34).
+    """Largest second derivative of `engagement` by the shaft angle [1/rad], `2 pi phi0 / T^2`, (3.34).
 
-    Args:
-        span, turn: T and phi0 [rad]
-
-    Returns:
-        acceleration at a shaft speed of 1 rad/s [1/rad]; erratum: its value is printed as 0.32
+    It is the acceleration at a shaft speed of 1 rad/s. Erratum: its value is printed as 0.32.
 
     >>> from math import radians
     >>> round(largest_bend(radians(75), radians(12)), 3)
@@ -89,19 +71,9 @@ def largest_bend(span: float, turn: float) -> float:
 
 
 def spring_torque(turned: float, turn: float, force: float, stiffness: float, arm: float) -> float:
-    """Torque of the spring on the pawl, `M = R [P + C R (phi0 - phi)]`: (3.32) and (3.37) as one.
+    """Torque of the spring on the pawl [N m], `M = R [P + C R (phi0 - phi)]`: (3.32) and (3.37) as one.
 
     The source takes it as constant for the torque, `P R`, and without preload for the time, `C R^2 phi`.
-
-    Args:
-        turned: angle phi that the pawl has turned [rad]
-        turn: whole turn phi0 [rad]
-        force: of the spring at the end of the turn, its preload P [N]
-        stiffness: of the spring C [N/m]
-        arm: lever arm R [m]
-
-    Returns:
-        torque [N m]
 
     >>> spring_torque(0.25, 0.25, 20.0, 2500.0, 0.05), spring_torque(0.0, 0.25, 20.0, 2500.0, 0.05)
     (1.0, 2.5625)
@@ -112,19 +84,11 @@ def spring_torque(turned: float, turn: float, force: float, stiffness: float, ar
 def torque_speed_limit(
     inertia: float, span: float, turn: float, force: float, stiffness: float, arm: float
 ) -> float:
-    """Shaft speed at which the pawl's inertia needs all of the spring's torque, somewhere in the engagement.
+    """Shaft speed [rad/s] at which the pawl's inertia needs all of the spring's torque in the engagement.
 
     The least of `sqrt(M / (I phi''))`, from the condition before (3.35), with M from `spring_torque` and
     phi'' from `engagement`; found to rounding by bisection of its derivative, between the crest of phi'' and
     the middle. With a stiffness of 0 it is at the crest: the source's `sqrt(P R / (I bend))`.
-
-    Args:
-        inertia: I [kg m2]
-        span: shaft angle T of the engagement [rad]
-        turn, force, stiffness, arm: as for `spring_torque`
-
-    Returns:
-        speed [rad/s]
 
     >>> from math import radians
     >>> round(torque_speed_limit(375.4e-6, radians(75), radians(12), 20.0, 0.0, 0.05) * 30 / pi)
@@ -146,17 +110,11 @@ def torque_speed_limit(
 
 
 def release_time(inertia: float, turn: float, force: float, stiffness: float, arm: float) -> float:
-    """Time in which the spring moves the pawl over from rest, equations (3.38) to (3.47) with a preload.
+    """Time in which the spring moves the pawl over from rest [s], (3.38) to (3.47) with a preload.
 
     `I phi'' = M` with M from `spring_torque`: `T_f = acos(d / (phi0 + d)) / k`, `d = P / (C R)`,
-    `k^2 = C R^2 / I`. Without preload it is a quarter of a period, `pi / (2 k)`, independent of the turn.
-
-    Args:
-        inertia: I [kg m2]
-        turn, force, stiffness, arm: as for `spring_torque`; the stiffness is positive
-
-    Returns:
-        time [s]; erratum: the source divides by k^2 and finds 0.001 s
+    `k^2 = C R^2 / I`, C positive. Without preload it is a quarter of a period, `pi / (2 k)`, independent of
+    the turn. Erratum: the source divides by k^2 and finds 0.001 s.
 
     >>> round(1e3 * release_time(375.4e-6, 0.2156, 0.0, 2500.0, 0.05), 2)  # as in the source
     12.17
@@ -170,14 +128,11 @@ def release_time(inertia: float, turn: float, force: float, stiffness: float, ar
 
 
 def available_time(angle: float, speed: float) -> float:
-    """Time in which the shaft turns through an angle, at most 1e6 s.
+    """Time in which the shaft turns through an angle [s], at most 1e6 s.
 
     Args:
         angle: during which the rotor dwells [rad]
         speed: of the shaft, not negative [rad/s]
-
-    Returns:
-        time [s]
 
     >>> from math import radians
     >>> round(1e3 * available_time(radians(90), 620 * pi / 30), 1)
@@ -189,7 +144,7 @@ def available_time(angle: float, speed: float) -> float:
 
 
 def friction_power(coefficient: float, force: float, radius: float, speed: float, count: float) -> float:
-    """Power lost to friction between pawls and discs, `W = f N r w K`, equation (3.48).
+    """Power lost to friction between pawls and discs [W], `W = f N r w K`, equation (3.48).
 
     Args:
         coefficient: of friction f [1]
@@ -197,9 +152,6 @@ def friction_power(coefficient: float, force: float, radius: float, speed: float
         radius: of the contact r [m]
         speed: of the disc w [rad/s]
         count: of frames, with one pawl each, K [1]
-
-    Returns:
-        power [W]
 
     >>> round(friction_power(0.1, 20.0, 0.0875, 1.4 / 3 * 650 * pi / 30, 20.0))
     111

@@ -15,16 +15,13 @@ from .linkage import closed_acos
 def dead_centre(
     crank: float, coupler: float, rocker: float, pivot_x: float, pivot_y: float, assembly: int, extended: bool
 ) -> float:
-    """Crank angle at which crank and coupler are in line, so that the rocker is at an end of its swing.
+    """Crank angle [rad] at which crank and coupler are in line, so that the rocker is at an end of its swing.
 
     Args:
         crank, coupler, rocker: lengths [m]
         pivot_x, pivot_y: position of the rocker's pivot relative to the crank's centre [m]
         assembly: of the four-bar, as for `four_bar`
         extended: whether the coupler extends the crank or folds back over it
-
-    Returns:
-        crank angle [rad]
 
     >>> round(dead_centre(1.0, 4.0, 3.0, 4.0, 0.0, -1, True), 12) == round(acos(0.8), 12)  # a 3-4-5 triangle
     True
@@ -37,14 +34,11 @@ def dead_centre(
 
 
 def transmission_angle(distance: float, coupler: float, rocker: float) -> float:
-    """Acute angle between coupler and rocker, from the cosine rule.
+    """Acute angle between coupler and rocker [rad], from the cosine rule.
 
     Args:
         distance: from the crank pin to the rocker's pivot [m]
         coupler, rocker: lengths [m]
-
-    Returns:
-        angle [rad], 0 to pi/2
 
     >>> round(transmission_angle(5.0, 3.0, 4.0) / pi, 12)
     0.5
@@ -71,7 +65,7 @@ def smallest_transmission_angle(crank: float, coupler: float, rocker: float, fra
 def reed_motion(
     chi: float, chi_first: float, chi_second: float, arm: float, rod: float, height: float
 ) -> tuple[float, float, float, float]:
-    """Reed coordinate with its derivatives, and the pressure angle of the rod that drives the reed.
+    """Reed coordinate and its derivatives by the shaft angle [m], and the slope of the rod to it [rad].
 
     `x = q cos(chi) + sqrt(l^2 - (H - q sin(chi))^2)`, differentiated exactly.
 
@@ -79,9 +73,6 @@ def reed_motion(
         chi, chi_first, chi_second: angle of the rocker's arm [rad] and its derivatives by the shaft angle [1]
         arm, rod: lengths q and l [m]
         height: H of the reed's line above the rocker's pivot [m]
-
-    Returns:
-        coordinate [m], first and second derivative by the shaft angle [m], slope of the rod [rad]
 
     Valid while `|H - q sin(chi)| < l`: see `rod_margin`.
 
@@ -108,7 +99,6 @@ def rod_margin(middle: float, half_swing: float, arm: float, rod: float, height:
 
     Args:
         middle, half_swing: angle of the arm in the middle of its swing, half the swing [rad]
-        arm, rod, height: as for `reed_motion` [m]
 
     >>> rod_margin(0.5 * pi, 0.1, 1.0, 0.5, 1.2) > 0.0, rod_margin(0.5 * pi, 0.1, 1.0, 0.1, 1.2) > 0.0
     (True, False)
@@ -147,7 +137,7 @@ def in_line_margin(middle: float, half_swing: float, arm: float, rod: float, hei
 
 
 def servo_turn(x: float, run: float, ramp: float) -> tuple[float, float, float]:
-    """Turn of a crank that a servo drives once in a revolution of the shaft, and that stands otherwise.
+    """Turn of a crank that a servo drives once a revolution [rad], its derivatives by the shaft angle [1].
 
     The source says that a servo runs intermittently once the weft is inserted, and turns the crank evenly
     while it runs; how it starts and stops is our assumption. The crank turns at
@@ -161,9 +151,6 @@ def servo_turn(x: float, run: float, ramp: float) -> tuple[float, float, float]:
         x: shaft angle from the beat-up, which is the middle of the run [rad]
         run: shaft angle in which the crank turns once, up to 2 pi [rad]
         ramp: shaft angle r in which it speeds up, and in which it slows down, up to run / 2 [rad]
-
-    Returns:
-        turn of the crank from the beat-up [rad], its first and second derivative by the shaft angle [1]
 
     >>> servo_turn(0.0, pi, 0.5 * pi)
     (0.0, 4.0, 0.0)

@@ -16,7 +16,7 @@ def too_far(angle: float) -> bool:
 
 
 def ramp(time: float, duration: float) -> tuple[float, float, float]:
-    """Smooth start-up: equivalent running time, share of full speed and its rate.
+    """Smooth start-up: equivalent time at full speed [s], share of full speed [1] and its rate [1/s].
 
     The share of full speed is the quintic `10 u^3 - 15 u^4 + 6 u^5`, `u = time / duration`: velocity,
     acceleration and jerk are continuous at both ends. The ramp delays the shaft by half its duration.
@@ -24,9 +24,6 @@ def ramp(time: float, duration: float) -> tuple[float, float, float]:
     Args:
         time: time since the start [s]
         duration: length of the ramp [s]; 0 for none
-
-    Returns:
-        equivalent time at full speed [s], share of full speed [1], rate of the share [1/s]
 
     >>> ramp(2.0, 2.0)
     (1.0, 1.0, 0.0)
@@ -52,7 +49,7 @@ def shaft_motion(
     ripple_amplitude: float,
     ripple_order: int,
 ) -> tuple[float, float, float]:
-    """Angle, velocity and acceleration of a shaft that ramps up and ripples.
+    """Angle [rad], velocity [rad/s] and acceleration [rad/s2] of a shaft that ramps up and ripples.
 
     With the mean angle `p(t)` of the ramp the shaft turns at `p' (1 + A sin(n p))`: integrable in closed
     form, periodic in the mean angle, never backwards while `A < 1`.
@@ -64,9 +61,6 @@ def shaft_motion(
         ramp_duration: length of the start-up [s]
         ripple_amplitude: A, relative to the speed [1]
         ripple_order: n, ripples per revolution [1]
-
-    Returns:
-        angle [rad], velocity [rad/s], acceleration [rad/s2]
 
     >>> shaft_motion(0.5, 10.0, 1.0, 0.0, 0.0, 2)
     (6.0, 10.0, 0.0)

@@ -35,11 +35,7 @@ def sense_of(velocity: float, free: float, friction: float) -> float:
 def stopping_share(
     velocity: float, net: float, rise: float, duration: float, inertia: float, slope: float, sense: float
 ) -> float:
-    """Share of a part of the step at which a turning shaft stops, 1 if it does not.
-
-    Args:
-        velocity, net, rise, duration, inertia, slope: see `driven_motion`
-        sense: in which it turns, 1 or -1
+    """Share of a part of the step at which a shaft that turns in a sense, 1 or -1, stops; 1 if it does not.
 
     >>> stopping_share(3.0, -4.0, 0.0, 3.0, 2.0, 0.0, 1.0)  # after 1.5 s
     0.5
@@ -93,13 +89,9 @@ def opposed_motion(
     """Motion over a step with dry friction, through stops and releases.
 
     Args:
-        velocity: at the start of the step [rad/s]
         free: net torque without dry friction at the start [N m]
         rise: of the load over the step, on a straight line [N m]
-        duration: of the step [s]
-        inertia: J [kg m2], positive
         slope: of motor and viscous friction together [N m s/rad], not negative
-        friction: dry friction R [N m], not negative
 
     Returns:
         velocity at the end, means of the velocity, of (1 - u) times it and of its amount [rad/s]

@@ -4,6 +4,10 @@ Source: Korolev, thesis on rotary dobbies (Moscow), sections 3.5 and 5.1, equati
 the law after Kragelsky in the form that (3.29) solves: `F' + r F = b (x' + n x)`. Over a step the extension
 is a polynomial in the share u of the step, and so is the right side. The force follows in closed form from
 the moments of a fading memory, which are computed without cancellation for every rate and step.
+
+Symbols: the eye is at the `height` y above the line from the fell of the cloth to the back rest [m], l1 and
+l2 are its distances from these along the line, `front` and `back` [m]; b is the `stiffness` [N/m], n the
+`creep` and r the `relaxation` [1/s] of the law.
 """
 
 from math import exp, fabs, sqrt
@@ -12,16 +16,9 @@ from .numerics.brackets import at_root
 
 
 def eye_pull(height: float, front: float, back: float) -> float:
-    """Share of its tension with which a thread pulls its heald eye back: the sines of its two parts, added.
+    """Share of its tension [1] with which a thread pulls its heald eye back: sum of the sines of its parts.
 
-    It is also the derivative of the extension by the height of the eye.
-
-    Args:
-        height: of the eye above the line from the fell of the cloth to the back rest [m]
-        front, back: distances of the eye from the fell and from the back rest, along that line [m]
-
-    Returns:
-        share, with the sign of the height [1]
+    It is also the derivative of the extension by the height of the eye. It has the sign of the height.
 
     >>> round(eye_pull(0.3, 0.4, 0.4), 12)
     1.2
@@ -47,16 +44,9 @@ def eye_bend(height: float, front: float, back: float) -> float:
 def thread_extension(
     height: float, velocity: float, acceleration: float, front: float, back: float
 ) -> tuple[float, float, float]:
-    """Extension of a thread by its heald eye, `x = sqrt(l1^2 + y^2) - l1 + sqrt(l2^2 + y^2) - l2`.
+    """Extension of a thread [m], `x = sqrt(l1^2 + y^2) - l1 + sqrt(l2^2 + y^2) - l2`, and its two rates.
 
     Each part is computed as `y^2 / (sqrt(l^2 + y^2) + l)`, so nothing cancels in a nearly closed shed.
-
-    Args:
-        height, velocity, acceleration: y of the eye and its rates [m, m/s, m/s2]
-        front, back: l1 and l2 as for `eye_pull` [m]
-
-    Returns:
-        x [m], its rate [m/s] and second rate [m/s2]
 
     >>> [round(each, 12) for each in thread_extension(0.3, 1.0, 0.0, 0.4, 0.4)]
     [0.2, 1.2, 2.56]
@@ -73,7 +63,7 @@ def thread_extension(
 
 
 def constant_rate_force(time: float, rate: float, stiffness: float, creep: float, relaxation: float) -> float:
-    """Force of a thread stretched from rest at a constant rate, `x = v t`, by the corrected (3.28).
+    """Force of a thread stretched from rest at a constant rate [N], `x = v t`, by the corrected (3.28).
 
     `F = b v [n t / r + (1 - n/r) (1 - exp(-r t)) / r]`, the exact solution of the law. Equation (3.29) is its
     counterpart for a force that rises at a constant rate.
@@ -81,11 +71,6 @@ def constant_rate_force(time: float, rate: float, stiffness: float, creep: float
     Args:
         time: t since the start [s]
         rate: of the extension v [m/s]
-        stiffness: b [N/m]
-        creep, relaxation: n and r [1/s], r not zero
-
-    Returns:
-        force [N]
 
     >>> constant_rate_force(2.0, 0.001, 67.0, 5.0, 5.0)  # n = r: a spring, b x
     0.134
@@ -99,10 +84,7 @@ def fading(decay: float) -> tuple[float, float, float, float, float, float, floa
     """`exp(-z)` and the moments of a fading memory, `I_k = integral of exp(-z (1 - u)) u^k`, u from 0 to 1.
 
     `z I_k = 1 - k I_(k-1)`, upwards from I_0 for z >= 3, downwards from a series for I_6 below, so that the
-    rounding of one moment does not grow in the next.
-
-    Args:
-        decay: z, not negative [1]
+    rounding of one moment does not grow in the next. z is not negative.
 
     Returns:
         exp(-z), I_0 .. I_6
@@ -137,18 +119,14 @@ def fading(decay: float) -> tuple[float, float, float, float, float, float, floa
 def thread_drive(
     stiffness: float, creep: float, start: float, end: float, a0: float, a1: float, a2: float, a3: float
 ) -> list[float]:
-    """Right side of the law over a step, `b (x' + n x)`, as a polynomial in the share u of the step.
+    """Right side of the law over a step [N], `b (x' + n x)`: its coefficients of 1, u .. u^5, u its share.
 
     The extension at both ends is exact, so rounding does not add up over many steps.
 
     Args:
-        stiffness: b [N/m]
         creep: n times the duration of the step [1]
         start, end: extension at both ends [m]
         a0 .. a3: its second derivative by u, as from `joined` [m]
-
-    Returns:
-        coefficients of 1, u .. u^5 [N]
 
     >>> thread_drive(1.0, 2.0, 3.0, 4.0, 0.0, 0.0, 0.0, 0.0)
     [7.0, 2.0, 0.0, 0.0, 0.0, 0.0]
@@ -165,7 +143,7 @@ def thread_drive(
 
 
 def thread_force(force: float, decay: float, p: list[float], share: float) -> tuple[float, float]:
-    """Force of the thread at a share u of the step, and its integral over u from 0.
+    """Force of the thread at a share u of the step, and its integral over u from 0 [N, N].
 
     Exact solution of `dF/du + z F = p0 + p1 u + .. + p5 u^5`:
 
@@ -177,9 +155,6 @@ def thread_force(force: float, decay: float, p: list[float], share: float) -> tu
         decay: z, the relaxation rate times the duration of the step [1]
         p: right side of the law, from `thread_drive` [N]
         share: u [1]
-
-    Returns:
-        force [N], integral [N]
 
     >>> thread_force(1.0, 0.0, [2.0, 0.0, 0.0, 0.0, 0.0, 0.0], 1.0)
     (3.0, 2.0)
@@ -228,18 +203,14 @@ def thread_gauge(turn: bool, level: float, force: float, decay: float, p: list[f
 def thread_locate(
     turn: bool, level: float, force: float, decay: float, p: list[float], low: float, high: float
 ) -> float:
-    """Share of the step at which the force has an extreme, or at which it passes a level.
+    """Share of the step [1] at which the force has an extreme, or at which it passes a level.
 
     Regula falsi (Illinois), with a bisection every third step, on the exact solution.
 
     Args:
         turn: True for the extreme, False for the level
         level: of the force [N]
-        force .. p: as for `thread_force`
         low, high: bracket of u; the derivative, or force minus level, changes sign between them
-
-    Returns:
-        share [1]
 
     >>> round(thread_locate(False, 2.0, 1.0, 0.0, [2.0, 0.0, 0.0, 0.0, 0.0, 0.0], 0.0, 1.0), 12)
     0.5

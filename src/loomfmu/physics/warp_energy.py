@@ -7,19 +7,15 @@ from .warp import thread_growth
 def thread_energy(
     force: float, extension: float, stiffness: float, creep: float, relaxation: float
 ) -> tuple[float, float]:
-    """Energy that a thread stores, and power that creep and relaxation take from it, by the law (3.28).
+    """Energy that a thread stores [J], and power that creep and relaxation take from it [W], by (3.28).
 
     With `E = F^2 / (2 b)` the law gives `F x' = E' + F (r F / b - n x)`, for every b, n and r. The power is
-    negative where creep gives back; over a closed cycle it is what the thread dissipates.
+    negative where creep gives back; over a closed cycle it is what the thread dissipates. Both are 0 without
+    stiffness, as the force is.
 
     Args:
         force: F above the pretension [N]
         extension: x [m]
-        stiffness: b [N/m]
-        creep, relaxation: n and r [1/s]
-
-    Returns:
-        energy [J], power [W]; 0 without stiffness, as the force is
 
     >>> thread_energy(2.0, 0.5, 4.0, 3.0, 3.0)  # n = r: a spring with F = b x takes nothing
     (0.5, 0.0)
@@ -45,7 +41,6 @@ def thread_power(
 
     Args:
         pretension, force: T0 and F there [N]
-        decay, p: as for `thread_force`
         rate, second: rate of the extension by u at the start, and its second rate as from `joined` [m]
         share: u [1]
 

@@ -8,6 +8,9 @@ more yarn through. With F = EA (L / N - 1) and the limit H of `drawing_limit`
 
 so F' is continuous, brake and yarn never chatter, and each of the two branches has a closed form: N is
 constant while the brake holds, and F relaxes towards H while it lets yarn through.
+
+Symbols: v and v' are `speed` and `acceleration` of the yarn [m/s, m/s2], q its `density` [kg/m], L its
+`length` [m], EA its `stiffness` [N].
 """
 
 from math import exp, fabs, pi, sqrt
@@ -33,14 +36,11 @@ def capstan_gain(friction: float, angle: float) -> float:
 
 
 def drag_per_length(coefficient: float, diameter: float) -> float:
-    """Air drag on yarn that moves along itself, per length and square of its speed: `c rho pi d / 2`.
+    """Air drag on yarn that moves along itself, per length and square of its speed [kg/m2]: `c rho pi d / 2`.
 
     Args:
         coefficient: c of friction in air, for the yarn's circumference [1]
         diameter: d of the yarn [m]
-
-    Returns:
-        drag [kg/m2]
 
     >>> round(drag_per_length(0.065, 0.2e-3) * 1.0 * 20.0**2, 5)  # 1 m at 20 m/s [N]
     0.0098
@@ -68,7 +68,7 @@ def drawing_limit(
     speed: float,
     acceleration: float,
 ) -> tuple[float, float]:
-    """Tension behind the last eye at which the brake lets yarn through, and its rate.
+    """Tension H behind the last eye at which the brake lets yarn through [N], and its rate [N/s].
 
     Yarn that runs round an eye presses on it with `T - q v^2` for each radian: the rest turns its momentum.
     So `T - q v^2` is what friction multiplies, and before the eyes `T = T0 + m v^2 + B`. Where that is less
@@ -78,12 +78,7 @@ def drawing_limit(
         gain: g of all eyes, from `capstan_gain` [1]
         supply: tension T0 at the package [N]
         unwound: m, the yarn's mass per length times the factor for its balloon [kg/m]
-        density: q of the yarn [kg/m]
         brake, brake_rate: force B of the brake and its rate [N, N/s]
-        speed, acceleration: v and v' of the yarn [m/s, m/s2]
-
-    Returns:
-        H [N], its rate [N/s]
 
     >>> drawing_limit(2.0, 0.5, 0.01, 0.01, 1.0, 3.0, 10.0, 100.0)
     (4.0, 26.0)
@@ -115,16 +110,13 @@ def unstretched_length(stiffness: float, length: float, force: float) -> float:
 
 
 def relaxed_force(force: float, decay: float, low: float, share: float, limit: list[float]) -> float:
-    """Elastic force while the brake lets yarn through: exact solution of `tau F' + F = H`, H a cubic.
+    """Elastic force while the brake lets yarn through [N]: exact solution of `tau F' + F = H`, H a cubic.
 
     Args:
         force: F at the beginning [N]
         decay: duration of the step over the retardation time tau [1]
         low, share: share u of the step at the beginning and at the end
         limit: H by u, coefficients of 1 .. u^3 [N]
-
-    Returns:
-        F [N]
 
     >>> relaxed_force(2.0, 3.0, 0.0, 1.0, [2.0, 0.0, 0.0, 0.0])
     2.0
@@ -144,18 +136,10 @@ def relaxed_force(force: float, decay: float, low: float, share: float, limit: l
 
 
 def snatch_tension(stiffness: float, density: float, speed: float) -> float:
-    """Tension at the end of elastic yarn at rest that is drawn at a constant speed at once, `v sqrt(EA q)`.
+    """Tension [N] at the end of elastic yarn at rest, drawn at a constant speed at once, `v sqrt(EA q)`.
 
     A wave runs along the yarn at `c = sqrt(EA / q)` and leaves it with the strain `v / c`; the tension stays
     until the wave is back.
-
-    Args:
-        stiffness: EA [N]
-        density: q of the yarn [kg/m]
-        speed: v of the end [m/s]
-
-    Returns:
-        tension [N]
 
     >>> round(snatch_tension(75.0, 3e-5, 20.0), 12)
     0.948683298051
@@ -164,16 +148,7 @@ def snatch_tension(stiffness: float, density: float, speed: float) -> float:
 
 
 def moving_load(length: float, speed: float, acceleration: float, density: float, drag: float) -> float:
-    """Return the tension that inertia and drag of the moving yarn add, `q L a + k L v^2`.
-
-    Args:
-        length: L [m]
-        speed, acceleration: v and v' of the yarn [m/s, m/s2]
-        density: q of the yarn [kg/m]
-        drag: k, from `drag_per_length` [kg/m2]
-
-    Returns:
-        load [N]
+    """Return the tension that inertia and drag k [kg/m2] of the moving yarn add [N], `q L a + k L v^2`.
 
     >>> moving_load(2.0, 3.0, 10.0, 0.5, 1.0)
     28.0

@@ -13,7 +13,7 @@ from ..cosim.importing.fmus import Port
 from ..cosim.scenes.notes import check_effect
 from ..cosim.scenes.scene import Scene
 from ..errors import LoomfmuError, shown
-from ..sweeps.varied import Varied, varied
+from ..sweeps.varied import Keyed, Varied, varied
 
 SENSIBLE = 10.0  # times the scene's value: bounds that are farther apart say nothing about a range
 AROUND = 2.0  # from the scene's value divided by it to the scene's value times it
@@ -21,23 +21,17 @@ FORM = "write it as INSTANCE.VARIABLE or INSTANCE.VARIABLE=LOW..HIGH, such as sh
 
 
 @dataclass(frozen=True)
-class Span:
+class Span(Keyed):
     """A variable of a scene from `low` to `high` in SI; `source` says where its range comes from.
 
     `value` is the scene's own value, `doubts` warn of ends that were probably meant in another unit.
     """
 
-    varied: Varied
     low: float
     high: float
     value: float
     source: str
     doubts: tuple[str, ...] = ()
-
-    @property
-    def key(self) -> str:
-        """The variable's name in scenes."""
-        return self.varied.key
 
     @property
     def unit(self) -> str:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..cosim.scenes.settings import check_table
 from ..errors import LoomfmuError, shown
-from .varied import Value, Varied
+from .varied import Keyed, Value, Varied
 
 MOST = 10_000_000  # combinations, points of an axis
 RANGE = ("from", "to", "count", "logarithmic")
@@ -17,19 +17,13 @@ TYPES = {"Real": np.float64, "Integer": np.int64, "Boolean": np.bool_, "Text": n
 
 
 @dataclass(frozen=True)
-class Axis:
+class Axis(Keyed):
     """A key with its values in SI: the points of a grid, or one for each point of a sample."""
 
-    varied: Varied
     values: NDArray[Any]
     sampled: bool = False
     logarithmic: bool = False
     doubts: tuple[str, ...] = ()
-
-    @property
-    def key(self) -> str:
-        """The key in the sweep file."""
-        return self.varied.key
 
     @property
     def numeric(self) -> bool:
@@ -98,19 +92,13 @@ def _doubts(varied: Varied, given: list[Any]) -> tuple[str, ...]:
 
 
 @dataclass(frozen=True)
-class Range:
+class Range(Keyed):
     """A key between two ends in SI, both included; shares of a logarithmic one are equal in the logarithm."""
 
-    varied: Varied
     low: float
     high: float
     logarithmic: bool = False
     doubts: tuple[str, ...] = ()
-
-    @property
-    def key(self) -> str:
-        """The key in files."""
-        return self.varied.key
 
     def at(self, shares: Any) -> NDArray[Any]:
         """The values at shares of the range, 0 to 1; each whole number has an equal share."""

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
 from multiprocessing.resource_tracker import ensure_running
-from typing import Any, Protocol
+from typing import Any
 
 from ..errors import LoomfmuError, signal_name
 
@@ -33,30 +33,13 @@ class WorkerDied(Exception):
     """The process that had a task has ended."""
 
 
-class Pool(Protocol):
-    """Takes tasks and gives back what became of them: a value, or the exception that it raised."""
-
-    @property
-    def workers(self) -> int:
-        """The number of tasks that run at a time."""
-
-    def room(self) -> int:
-        """The number of further tasks that it can take."""
-
-    def submit(self, task: Task) -> None:
-        """Take a task."""
-
-    def finished(self) -> list[tuple[Any, Any]]:
-        """Keys and outcomes of tasks that are done; waits until there is one."""
-
-    def close(self) -> None:
-        """End it; what is under way is lost."""
-
-
 class Here:
-    """This process: a task is done when it is submitted."""
+    """This process: a task is done when it is submitted.
 
-    workers = 1
+    As the other pools, it takes tasks and gives back what became of each: a value, or the exception raised.
+    """
+
+    workers = 1  # tasks that run at a time
 
     def __init__(self) -> None:
         self._done: list[tuple[Any, Any]] = []

@@ -36,13 +36,12 @@ def beyond(table: Any) -> Beyond:
 
 
 def _distances(table: Any) -> NDArray[np.float64]:
-    """Return how far each row is beyond the bound of each claim: claims down, rows along."""
-    return np.array([_rounded(distance(table, number)) for number in range(len(labels_of(table)))])
+    """Return how far each row is beyond the bound of each claim: claims down, rows along.
 
-
-def _rounded(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Values without the digits that rounding and the length of the steps decide."""
-    return np.array([float(f"{value:.{DIGITS}g}") for value in values.tolist()])
+    They are without the digits that rounding and the length of the steps decide.
+    """
+    rows = [distance(table, number).tolist() for number in range(len(labels_of(table)))]
+    return np.array([[float(f"{value:.{DIGITS}g}") for value in row] for row in rows])
 
 
 def distance(table: Any, number: int) -> NDArray[np.float64]:

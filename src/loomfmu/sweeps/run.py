@@ -1,7 +1,7 @@
 """Running a sweep: batches until all rows are there, then the table, the picture and the traces."""
 
 import hashlib
-from contextlib import ExitStack
+from contextlib import ExitStack, closing
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,10 +15,9 @@ from ..extras import installed
 from ..files import ANY, write_file
 from ..traces import TRACE
 from . import plan as plans
-from .place import check_place, cluster, local, resumable
 from .plan import SweepPlan
-from .pools import Pool, Task, WorkerDied
-from .schedule import run_batches
+from .pools import Task, WorkerDied
+from .schedule import Pool, check_place, cluster, local, resumable, run_batches
 from .worker import Batch, Job, job_of, run_trace
 
 if TYPE_CHECKING:
@@ -121,8 +120,8 @@ def sweep(
     with resumable(directory, "rows"):
         fingerprint, inputs = _fingerprint(plan, job), [Path(path), *files_of(plan.scene)]
         with opened(directory, plan, fingerprint, restart, inputs) as store, ExitStack() as pools:
-            here = pools.enter_context(local(plan.scene, processes, plan.rows))
-            rows_pool = pools.enter_context(cluster(scheduler)) if scheduler else here
+            here = pools.enter_context(closing(local(plan.scene, processes, plan.rows)))
+            rows_pool = pools.enter_context(closing(cluster(scheduler))) if scheduler else here
             ran = _run_rows(store, job, rows_pool, progress)
             table = store.finish()
             picture = _draw(store, table)
@@ -189,14 +188,11 @@ def _run_traces(
     limits = store.plan.traces
     paths = {row: store.trace_path(row) for row in traced_rows(table, limits.failures, limits.sample)}
     left = [row for row, path in paths.items() if not TRACE.ours(path)]
-    tasks = [Task(row, run_trace, _traced(store, job, row, paths[row])) for row in left]
+    settings = {row: store.plan.settings(range(row, row + 1))[0] for row in left}
+    tasks = [Task(row, run_trace, (job, settings[row], paths[row])) for row in left]
     with progress_bar("traces", len(left), wanted=progress) as advance:
         failed = _do(tasks, pool, advance)
     return tuple(path for row, path in paths.items() if row not in failed), failed
-
-
-def _traced(store: "Store", job: Job, row: int, path: Path) -> tuple[Any, ...]:
-    return job, store.plan.settings(range(row, row + 1))[0], path
 
 
 def _do(tasks: list[Task], pool: Pool, advance: Advance) -> dict[Any, str]:

@@ -1,13 +1,24 @@
-"""The schedule of rows: batches long enough to keep all workers busy and the scheduling process idle."""
+"""The schedule of rows, and the place where they run.
 
+Batches are long enough to keep all workers busy and the scheduling process idle.
+"""
+
+import os
 from collections import deque
-from collections.abc import Callable, Iterable
-from typing import Any
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from ..cosim.scenes.scene import Scene
-from .pools import Pool, Task, WorkerDied
+from ..errors import LoomfmuError, shown
+from .pools import Here, Processes, Task, WorkerDied
 from .worker import Batch, Job, failed, run_rows
 
+if TYPE_CHECKING:
+    from .cluster import Cluster
+
+Pool: TypeAlias = "Here | Processes | Cluster"  # takes tasks, and gives back what became of them
 BATCH = 1.5  # s, what a batch should take: far above the cost of handing it over, little to lose
 SMALLEST = 50  # part of such a batch that the last ones still are: the workers end within its time
 GROWTH = 4  # of a batch over those before, until the time of a row is known well
@@ -117,3 +128,39 @@ def _reason(scene: Scene, died: WorkerDied) -> str:
     inside = scene.unprotected
     who = f", with {', '.join(inside)} in it; isolated = true says which call of which FMU" if inside else ""
     return f"{died}{who}"
+
+
+def check_place(processes: Any, scheduler: Any) -> None:
+    """Refuse what is not a number of processes or an address. Raises LoomfmuError."""
+    if processes is not None and (
+        isinstance(processes, bool) or not isinstance(processes, int) or processes < 1
+    ):
+        raise LoomfmuError(f"processes = {shown(processes)} must be 1 or more")
+    if scheduler is not None and not isinstance(scheduler, str):
+        raise LoomfmuError(f'scheduler = {shown(scheduler)} is not an address such as "tcp://host:8786"')
+
+
+@contextmanager
+def resumable(directory: Path, what: str) -> Iterator[None]:
+    """Say of Ctrl-C what is kept in a directory, and how to go on. Raises KeyboardInterrupt."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(
+            f"interrupted; finished {what} are kept in {directory}; run the same command to continue"
+        ) from None
+
+
+def local(scene: Scene, processes: int | None, rows: int) -> Pool:
+    """This process where one is enough, unless an FMU may end it; else processes of this machine."""
+    # all cores that this process may use
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    workers = min(processes or cores, rows)
+    return Processes(workers) if workers > 1 or scene.unprotected else Here()
+
+
+def cluster(address: str) -> Pool:
+    """The workers of a dask scheduler."""
+    from .cluster import Cluster
+
+    return Cluster(address)

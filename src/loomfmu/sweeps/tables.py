@@ -34,7 +34,7 @@ def claim_columns(number: int, *parts: str) -> list[str]:
 def table_of(plan: SweepPlan, rows: range, batch: Batch) -> Any:
     """The part of the table that a batch is."""
     numbers = np.arange(rows.start, rows.stop)
-    columns = [numbers, *plan.columns(numbers).values(), *_transposed(batch.results)]
+    columns = [numbers, *plan.columns(numbers).values(), *zip(*batch.results, strict=True)]
     schema = schema_of(plan, batch.labels)
     arrays = []
     values: Any
@@ -43,10 +43,6 @@ def table_of(plan: SweepPlan, rows: range, batch: Batch) -> Any:
             values = [value if value is None else bool(value) for value in values]
         arrays.append(pa.array(values, type=field.type))
     return pa.Table.from_arrays(arrays, schema=schema)
-
-
-def _transposed(results: list[list[Any]]) -> list[list[Any]]:
-    return [list(column) for column in zip(*results, strict=True)]
 
 
 def schema_of(plan: SweepPlan, labels: tuple[Label, ...]) -> Any:

@@ -65,6 +65,18 @@ class Varied:
         return str(value)
 
 
+@dataclass(frozen=True)
+class Keyed:
+    """A key that varies, with what its subclasses say of its values."""
+
+    varied: Varied
+
+    @property
+    def key(self) -> str:
+        """The key in files and in scenes."""
+        return self.varied.key
+
+
 def varied(scene: Scene, key: str) -> Varied:
     """Return the values that a key sets in a scene. Raises LoomfmuError, naming the nearest known key."""
     pairs = overridden(scene.instances, key)

@@ -1,9 +1,16 @@
-"""The allowed contents of a trace's file: anything else might read other files, or fill the memory."""
+"""The contents of a trace's file: the attributes of a signal, and all that is allowed.
+
+Anything else might read other files, or fill the memory.
+"""
 
 from typing import Any
 
 import h5py
 import numpy as np
+
+from .. import units
+from ..declaring.variables import Beside
+from .signals import Channel
 
 FILTERS = {h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_SHUFFLE, h5py.h5z.FILTER_FLETCHER32}
 BESIDE = {"valid_if": "ancillary_variables"}  # roles of `Beside` that have another name in CF
@@ -44,6 +51,54 @@ def legible(name: str, value: Any) -> Any:
     except UnicodeEncodeError:  # h5py gives what it cannot decode as surrogates
         raise ValueError(f"its attribute {name!a} is not text in UTF-8") from None
     return value.item() if isinstance(value, np.generic) else value
+
+
+def about(unit: str, long_name: str, comment: str) -> dict[str, str]:
+    """The attributes that every dataset has."""
+    return {"UNIT": unit, "units": units.udunits(unit), "long_name": long_name, "COMMENT": comment}
+
+
+def about_channel(channel: Channel) -> dict[str, Any]:
+    """The attributes of a channel's dataset, of which `channel_of` reads what matters."""
+    said: dict[str, Any] = about(channel.unit, channel.variable.replace("_", " "), channel.description)
+    # a coordinate by CF: as a second scale of HDF5, xarray would take it for the dimension
+    said["coordinates"] = "shaft_angle"
+    if channel.boolean:
+        said["dtype"] = "bool"  # xarray reads it so; an enumeration would be texts in MATLAB
+    if channel.display != channel.unit:
+        said["DISPLAY_UNIT"] = channel.display
+    if channel.rate:
+        said["rate"] = channel.rate
+    for role, variable in channel.beside._asdict().items():
+        if variable:
+            said[BESIDE.get(role, role)] = variable
+    if channel.meanings:
+        flags = range(channel.first_flag, channel.first_flag + len(channel.meanings))
+        said["flag_values"] = np.array(flags, dtype="i4")
+        said["flag_meanings"] = " ".join(channel.meanings)
+    return said
+
+
+def channel_of(signal: str, item: Any) -> Channel:
+    """Read the channel that a dataset says it is. Raises ValueError for text that is not in UTF-8."""
+
+    def text(name: str) -> str | None:
+        found = legible(name, item.attrs.get(name))
+        return None if found is None else str(found)
+
+    instance, _, variable = signal.rpartition(".")
+    unit = str(text("UNIT"))
+    others = Beside(*(text(BESIDE.get(role, role)) for role in Beside._fields))
+    return Channel(
+        instance,
+        variable,
+        unit,
+        text("DISPLAY_UNIT") or unit,
+        str(text("COMMENT")),
+        real=item.dtype.kind == "f",
+        rate=text("rate"),
+        beside=others,
+    )
 
 
 def column(item: Any) -> Any:

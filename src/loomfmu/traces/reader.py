@@ -5,7 +5,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
-from types import TracebackType
 from typing import Any, Self
 
 import h5py
@@ -18,9 +17,9 @@ from ..declaring.variables import SHARED, variables_of
 from ..display import notebook
 from ..errors import LoomfmuError, shown
 from ..units import UnitError
-from .layout import BESIDE, attributes, check_link, column, has, legible, member
+from .layout import attributes, channel_of, check_link, column, has, member
 from .opened import TraceFile
-from .signals import Floats, Signals
+from .signals import Channel, Floats, Signals
 from .verdict import HEADINGS, Verdict
 
 ABOUT = (
@@ -48,11 +47,11 @@ class Trace(Signals):
         self.given = Path(path)  # what messages call it
         self.name = self.given.name
         self._cache: dict[str, NDArray[Any]] = {}
-        self._texts: dict[tuple[str, str], str | None] = {}
+        self._channels: dict[str, Channel] = {}
 
     def __getstate__(self) -> dict[str, Any]:
         """Return the file alone: a copy in another process reads values from it when it needs them."""
-        return {"_file": self._file, "given": self.given, "name": self.name, "_cache": {}, "_texts": {}}
+        return {"_file": self._file, "given": self.given, "name": self.name, "_cache": {}, "_channels": {}}
 
     def __repr__(self) -> str:
         return f"<Trace {self.given}>"
@@ -81,9 +80,7 @@ class Trace(Signals):
         self._file.keep_open()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_error: object) -> None:
         self.close()
 
     def close(self) -> None:
@@ -99,17 +96,9 @@ class Trace(Signals):
 
     def blocks(self, signal: str, rows: int) -> Iterator[NDArray[Any]]:
         """The values of a signal, so many rows at a time: none are kept, however long the run was."""
-        with self._dataset(signal) as dataset:
+        with self._file.opened():  # once for all of them
             for start in range(0, self.rows, rows):
-                yield self._values(dataset, slice(start, min(start + rows, self.rows)))
-
-    def _values(self, dataset: Any, rows: slice) -> NDArray[Any]:
-        self._check_length(dataset)
-        try:
-            values = np.asarray(dataset[rows])
-        except (OSError, RuntimeError) as error:
-            raise LoomfmuError(f"{self.given}: {dataset.name} cannot be read ({error})") from None
-        return values.astype(bool) if dataset.attrs.get("dtype") == "bool" else values
+                yield self.read(signal, slice(start, start + rows))
 
     def _check_length(self, dataset: Any) -> None:
         if len(dataset) < self.rows:
@@ -121,7 +110,12 @@ class Trace(Signals):
         if signal in self._cache:
             return self._cache[signal][rows]
         with self._dataset(signal) as dataset:
-            return self._values(dataset, slice(*rows.indices(self.rows)))
+            self._check_length(dataset)
+            try:
+                values = np.asarray(dataset[slice(*rows.indices(self.rows))])
+            except (OSError, RuntimeError) as error:
+                raise LoomfmuError(f"{self.given}: {dataset.name} cannot be read ({error})") from None
+            return values.astype(bool) if dataset.attrs.get("dtype") == "bool" else values
 
     def __contains__(self, signal: object) -> bool:
         return signal in self._signals
@@ -167,14 +161,12 @@ class Trace(Signals):
         instance, _, variable = signal.rpartition(".")
         return column(member(member(file, instance) if instance else file, variable))
 
-    def _text(self, signal: str, attribute: str) -> str | None:
-        """An attribute of a signal; None if it has none of that name."""
-        key = signal, attribute
-        if key not in self._texts:
+    def channel(self, signal: str) -> Channel:
+        """The channel that the file says a signal is. Raises LoomfmuError for one that is not recorded."""
+        if signal not in self._channels:
             with self._dataset(signal) as dataset:
-                text = legible(attribute, dataset.attrs.get(attribute))
-                self._texts[key] = None if text is None else str(text)
-        return self._texts[key]
+                self._channels[signal] = channel_of(signal, dataset)
+        return self._channels[signal]
 
     @cached_property
     def rows(self) -> int:
@@ -287,18 +279,6 @@ class Trace(Signals):
         except UnitError as error:
             raise LoomfmuError(f"{self.given}: {signal}: {error}") from None
 
-    def unit(self, signal: str) -> str:
-        """Unit of a signal."""
-        return str(self._text(signal, "UNIT"))
-
-    def display(self, signal: str) -> str:
-        """Unit that people read a signal in."""
-        return self._text(signal, "DISPLAY_UNIT") or self.unit(signal)
-
-    def description(self, signal: str) -> str:
-        """Return the description of a signal."""
-        return str(self._text(signal, "COMMENT"))
-
     def plot(self, *signals: str, over: str | None = None, fold: bool = False, axes: Any = None) -> Any:
         """Plot signals of one unit by matplotlib and return the axes.
 
@@ -314,25 +294,6 @@ class Trace(Signals):
         from .plotting import plot
 
         return plot(self, signals, over, fold, axes)
-
-    def rate(self, signal: str) -> str | None:
-        """The recorded signal that is this one's time derivative, if there is one."""
-        return self._named(signal, "rate")
-
-    def beside(self, signal: str, role: str) -> str | None:
-        """The recorded signal that says more of this one in a role of `Beside`, if there is one."""
-        return self._named(signal, BESIDE.get(role, role))
-
-    def _named(self, signal: str, attribute: str) -> str | None:
-        """The recorded signal of the same instance that an attribute names, if there is one."""
-        variable = self._text(signal, attribute)
-        name = f"{signal.split('.')[0]}.{variable}"
-        return name if variable and name in self else None
-
-    def is_real(self, signal: str) -> bool:
-        """Return whether a signal holds real numbers; integers, choices and booleans do not vary smoothly."""
-        with self._dataset(signal) as dataset:
-            return bool(dataset.dtype.kind == "f")
 
     @cached_property
     def parameters(self) -> dict[str, float | int | str]:

@@ -25,14 +25,14 @@ NO_SHAFT = "no shaft turns"
 
 @dataclass(frozen=True)
 class Channel:
-    """One recorded signal: where its values are found and what the trace says of it."""
+    """A recorded signal: all that a trace says of it; in memory also the `column` of its values."""
 
     instance: str
     variable: str
     unit: str
     display: str
     description: str
-    column: int
+    column: int = 0
     real: bool = True
     rate: str | None = None
     meanings: tuple[str, ...] = ()
@@ -98,12 +98,24 @@ class Signals(ABC):
         return ""
 
     @abstractmethod
+    def channel(self, signal: str) -> Channel:
+        """The channel of a signal. Raises LoomfmuError for one that is not recorded."""
+
     def unit(self, signal: str) -> str:
         """Unit of a signal."""
+        return self.channel(signal).unit
 
-    @abstractmethod
     def display(self, signal: str) -> str:
-        """Display unit of a signal."""
+        """Unit that people read a signal in."""
+        return self.channel(signal).display
+
+    def description(self, signal: str) -> str:
+        """Return the description of a signal."""
+        return self.channel(signal).description
+
+    def is_real(self, signal: str) -> bool:
+        """Return whether a signal holds real numbers; integers, choices and booleans do not vary smoothly."""
+        return self.channel(signal).real
 
     def displayed(self, signal: str) -> tuple[float, str]:
         """Return the unit that people read and the factor from it to the recorded values."""
@@ -138,13 +150,18 @@ class Signals(ABC):
         same = abs(turned - nominal) <= 0.005 * nominal  # as people read them, three digits
         return "" if same else f"the shaft turned {turned:.3g} revolutions"
 
-    @abstractmethod
     def rate(self, signal: str) -> str | None:
         """The recorded signal that is this one's time derivative, if there is one."""
+        return self._recorded(signal, self.channel(signal).rate)
 
-    @abstractmethod
     def beside(self, signal: str, role: str) -> str | None:
         """The recorded signal that says more of this one in a role of `Beside`, if there is one."""
+        return self._recorded(signal, getattr(self.channel(signal).beside, role))
+
+    def _recorded(self, signal: str, variable: str | None) -> str | None:
+        """A variable of the instance that a signal is of, if it is recorded."""
+        name = f"{signal.partition('.')[0]}.{variable}"
+        return name if variable and name in self else None
 
     def validity(self, signal: str) -> str | None:
         """The recorded yes-or-no signal that says when this one is known, if there is one."""
@@ -224,10 +241,6 @@ class Signals(ABC):
 
         return angles_where(self, condition)
 
-    def description(self, signal: str) -> str:
-        """Return the description of a signal."""
-        return ""
-
     def read(self, signal: str) -> NDArray[Any]:
         """The values of a signal, as `signals[name]`, which this does not keep in memory."""
         return self[signal]
@@ -293,7 +306,7 @@ class Recording(Signals):
 
     def column(self, signal: str) -> int:
         """Return the column of a signal in `reals`."""
-        return self._channel(signal).column
+        return self.channel(signal).column
 
     def start(self, instance: str, variable: str) -> float | int | bool | None:
         """A parameter of an instance as it was set, or None."""
@@ -326,7 +339,7 @@ class Recording(Signals):
         step = self._joined[2].strides[1]
         found = [Column(self.time, time)]
         for signal in signals:
-            channel = self._channel(signal)
+            channel = self.channel(signal)
             place = reals + channel.column * step
             found.append(Column(self[signal], place) if channel.real else Column.of(self[signal]))
         return found
@@ -342,7 +355,7 @@ class Recording(Signals):
         return self._joined[1]
 
     def __getitem__(self, signal: str) -> NDArray[Any]:
-        channel = self._channel(signal)
+        channel = self.channel(signal)
         values = self._joined[2 if channel.real else 3][:, channel.column]
         return values.astype(bool) if channel.boolean else values
 
@@ -352,35 +365,11 @@ class Recording(Signals):
     def __iter__(self) -> Iterator[str]:
         return iter(self._channels)
 
-    def _channel(self, signal: str) -> Channel:
+    def channel(self, signal: str) -> Channel:
+        """The channel of a signal. Raises LoomfmuError for one that is not recorded."""
         if not isinstance(signal, str) or signal not in self._channels:
             raise self._unknown(signal)
         return self._channels[signal]
-
-    def unit(self, signal: str) -> str:
-        """Unit of a signal."""
-        return self._channel(signal).unit
-
-    def display(self, signal: str) -> str:
-        """Display unit of a signal."""
-        return self._channel(signal).display
-
-    def description(self, signal: str) -> str:
-        """Return the description of a signal."""
-        return self._channel(signal).description
-
-    def rate(self, signal: str) -> str | None:
-        """The recorded signal that is this one's time derivative, if there is one."""
-        return self._recorded(signal, self._channel(signal).rate)
-
-    def beside(self, signal: str, role: str) -> str | None:
-        """The recorded signal that says more of this one in a role of `Beside`, if there is one."""
-        return self._recorded(signal, getattr(self._channel(signal).beside, role))
-
-    def _recorded(self, signal: str, variable: str | None) -> str | None:
-        """A variable of the instance that a signal is of, if it is recorded."""
-        name = f"{signal.split('.')[0]}.{variable}"
-        return name if name in self._channels else None
 
     def parameter(self, signal: str) -> float:
         """A parameter of an instance as it was set, such as `heald_1.stroke`."""

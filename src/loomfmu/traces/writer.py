@@ -14,13 +14,11 @@ from typing import Any
 import h5py
 import numpy as np
 
-from .. import units
 from ..files import make_folder, put
 from ..version import __version__
 from .chunks import INTEGERS, REALS, ROWS, Columns, annotate, chunk_of, dataset
-from .disk import PER_DATASET, SPARE, block_size, reserve
-from .edit import edited
-from .layout import BESIDE
+from .disk import PER_DATASET, SPARE, block_size, edited, reserve
+from .layout import about, about_channel
 from .places import abandoned, mark, replace
 from .reader import Trace
 from .signals import Channel, Early, Floats, Integers
@@ -103,10 +101,10 @@ class TraceWriter:
         shown = {"NX_class": "NXroot", "default": self.channels[0].instance} if self.channels else {}
         annotate(file, {**first, **shown, **attributes, "status": "running"})
         time = dataset(file, "time", REALS, rows)
-        annotate(time, {**_about("s", "time", "Time since the start of the run"), "standard_name": "time"})
+        annotate(time, {**about("s", "time", "Time since the start of the run"), "standard_name": "time"})
         time.make_scale("time")
         angle = dataset(file, "shaft_angle", REALS, rows)
-        turned = _about("rad", "shaft angle", "Angle of the main shaft, not wrapped")
+        turned = about("rad", "shaft angle", "Angle of the main shaft, not wrapped")
         annotate(angle, {**turned, "DISPLAY_UNIT": "deg"})
         angle.dims[0].attach_scale(time)
         found: dict[str, Any] = {}
@@ -124,7 +122,7 @@ class TraceWriter:
             made = dataset(
                 found[channel.instance], channel.variable, REALS if channel.real else INTEGERS, rows
             )
-            annotate(made, _about_channel(channel))
+            annotate(made, about_channel(channel))
             made.dims[0].attach_scale(time)
             datasets.append(made)
         for instance in groups.keys() - found.keys():
@@ -210,29 +208,3 @@ class TraceWriter:
             put(self.partial, partial_of(self.path))
             self.partial = partial_of(self.path)
         return self.partial
-
-
-def _about(unit: str, long_name: str, comment: str) -> dict[str, str]:
-    """The attributes that every dataset has."""
-    return {"UNIT": unit, "units": units.udunits(unit), "long_name": long_name, "COMMENT": comment}
-
-
-def _about_channel(channel: Channel) -> dict[str, Any]:
-    """The attributes of a channel's dataset."""
-    about: dict[str, Any] = _about(channel.unit, channel.variable.replace("_", " "), channel.description)
-    # a coordinate by CF: as a second scale of HDF5, xarray would take it for the dimension
-    about["coordinates"] = "shaft_angle"
-    if channel.boolean:
-        about["dtype"] = "bool"  # xarray reads it so; an enumeration would be texts in MATLAB
-    if channel.display != channel.unit:
-        about["DISPLAY_UNIT"] = channel.display
-    if channel.rate:
-        about["rate"] = channel.rate
-    for role, variable in channel.beside._asdict().items():
-        if variable:
-            about[BESIDE.get(role, role)] = variable
-    if channel.meanings:
-        flags = range(channel.first_flag, channel.first_flag + len(channel.meanings))
-        about["flag_values"] = np.array(flags, dtype="i4")
-        about["flag_meanings"] = " ".join(channel.meanings)
-    return about

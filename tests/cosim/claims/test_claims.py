@@ -342,13 +342,6 @@ def test_lowest_margin(loom: Looms) -> None:
     assert abs(coarse.worst - holds.worst) < 1e-5  # the quintic between samples 4 degrees apart
 
 
-def test_the_margin_of_a_belt_by_another_name(loom: Looms) -> None:
-    rest = '[worn]\ncomponent = "BeltMonitor"\nguide_clearance = "0.75 mm"\n'
-    trace = loom(rest=rest, shaft__speed="600 rpm")
-    assert judge(trace, kind="lowest_margin", bound=0.0)
-    assert not judge(trace, kind="lowest_margin", bound=0.0, belt="worn")
-
-
 # ---- the healds
 
 
@@ -819,12 +812,6 @@ def judged(kind: str, given: Any = (), **values: Any) -> Verdict:
 
 
 LIMIT = {"signal": "belt.lowest_speed_limit"}
-
-
-def test_a_bound_may_be_a_parameter_of_the_run() -> None:
-    verdict = judged("above", LIMIT | {"bound": "shaft.speed"})
-    assert verdict.holds
-    assert verdict.bound == pytest.approx(2 * math.pi * 10)  # 600 rev/min
 
 
 @pytest.mark.parametrize(

@@ -13,11 +13,16 @@ Samples = list[np.ndarray]
 
 def stepped(scene: Scene, stepper: type, grid: Grid | None = None, block: int = 100) -> Samples:
     """All samples of a run by a stepper of this class: times, reals and integers."""
-    blocks: list[Samples] = []
     with Master(scene, grid, compiled=stepper in (CompiledStepper, CompiledIteration)) as master:
         master.initialize()
         assert type(master._stepper) is stepper
-        master.run(block, lambda *parts: blocks.append([part.copy() for part in parts]), lambda _step: None)
+        return sampled(master, block)
+
+
+def sampled(master: Master, block: int = 100) -> Samples:
+    """All samples of an initialized master's run: times, reals and integers, over all blocks."""
+    blocks: list[Samples] = []
+    master.run(block, lambda *parts: blocks.append([part.copy() for part in parts]), lambda _step: None)
     return [np.concatenate(parts) for parts in zip(*blocks, strict=True)]
 
 

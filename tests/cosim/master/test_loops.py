@@ -133,12 +133,6 @@ def test_iterated_it_follows_the_exact_motion_in_fourth_order(inertia: float) ->
         assert coarse / fine > (12.0 if fine > 1e-9 and inertia > LIGHTEST else 5.0)
 
 
-def test_both_flavours_iterate_alike() -> None:
-    live, native = (driven("iterated", LIGHT, 180, flavour=flavour).trace for flavour in fmus.FLAVOURS)
-    # each step ends when both ends agree to 1e-12 of the torque
-    np.testing.assert_allclose(live["shaft.velocity"], native["shaft.velocity"], rtol=1e-10)
-
-
 COUPLED = """
 revolutions = 1
 steps_per_revolution = 90
@@ -261,11 +255,6 @@ carrier_mass = 0.1105 # the head's own: the belt's force would have to be 5 N mo
     assert "damper_1.carrier_acceleration -> belt.acceleration" in said
     assert "in 50 exchanges" in said
     assert [path.name for path in tmp_path.iterdir()] == ["unsolved.h5.partial"]
-
-
-def test_a_coupling_of_another_name_is_refused() -> None:
-    with pytest.raises(LoomfmuError, match=r"coupling = 'iterate' is unknown; did you mean 'iterated'"):
-        scenes.parse('coupling = "iterate"')
 
 
 # ---- the solver and the watch by themselves

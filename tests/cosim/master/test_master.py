@@ -97,12 +97,6 @@ def test_a_shaft_may_turn_backwards(tmp_path: Path) -> None:
     np.testing.assert_allclose(trace["weft.travel"], forward["weft.travel"][::-1], atol=1e-13 * scale)
 
 
-def test_a_scene_of_a_shaft_alone(tmp_path: Path) -> None:
-    with traced(scenes.parse("steps_per_revolution = 1\n[shaft]"), tmp_path) as trace:
-        assert set(trace) == {"shaft.angle", "shaft.velocity", "shaft.acceleration"}
-        assert trace.rows == 2
-
-
 # ---- loops
 
 

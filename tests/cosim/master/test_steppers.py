@@ -11,9 +11,8 @@ import pytest
 from direct_loom import small
 from foreign_motors import WHOLE, motor3
 from odd_components import odd
-from stepped import same_bits, stepped
+from stepped import same_bits, sampled, stepped
 
-import loomfmu
 from loomfmu import LoomfmuError
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.importing import fmus
@@ -110,21 +109,19 @@ def test_values_of_all_types_of_fmi_3_are_converted_alike(tmp_path: Path) -> Non
 SWITCHED = """
 revolutions = 1
 steps_per_revolution = 90
-coupling = "{coupling}"
 [odd]
 component = "Switched"
 [inputs]
 "odd.gear" = [[0, 2], [0.4, -3], [0.7, "4"]]
 "odd.engaged" = [[0.2, false], [0.5, true]]
 "odd.ratio" = [[0, 0.0], [1, 1.0]]
-{rest}
 """
 
 
 @pytest.mark.usefixtures("odd")
 @pytest.mark.parametrize("stepper", [CompiledStepper, PythonStepper])
 def test_driven_integers_and_booleans_are_held_until_the_next_row(stepper: type) -> None:
-    scene = scenes.parse(SWITCHED.format(coupling="lagged", rest=""), "switched")
+    scene = scenes.parse(SWITCHED, "switched")
     slots = {
         variable: slot for (name, variable), (_kind, slot) in Master(scene).slots.items() if name == "odd"
     }
@@ -139,22 +136,6 @@ def test_driven_integers_and_booleans_are_held_until_the_next_row(stepper: type)
     np.testing.assert_allclose(ratio, turns, rtol=0, atol=2e-16)  # one rounding
     np.testing.assert_array_equal(reals[:, slots["value"]], np.where(turns < 0.5, 0.0, gear * ratio))
     assert len(times) == 91
-
-
-@pytest.mark.usefixtures("odd")
-def test_an_iterated_loop_takes_driven_integers_too() -> None:
-    text = SWITCHED.replace('"odd.ratio" = [[0, 0.0], [1, 1.0]]\n', "").format(
-        coupling="iterated",
-        rest='"other.engaged" = [[0, true]]\n"other.gear" = [[0, 0], [0.5, 1]]\n'
-        '[other]\ncomponent = "Switched"\n'
-        '[wires]\n"other.ratio" = "odd.value"\n"odd.ratio" = "other.value"\n',
-    )
-    evaluated = loomfmu.evaluate(
-        scenes.parse(text, "switched"), values=["odd.gear_in_use", "other.gear_in_use"]
-    )
-    turns = np.arange(91) / 90
-    np.testing.assert_array_equal(evaluated.trace["other.gear_in_use"], turns >= 0.5)
-    np.testing.assert_array_equal(evaluated.trace["odd.gear_in_use"][[0, 36, 63]], [2, -3, 4])
 
 
 @pytest.mark.parametrize("block", [1, 2, 7, 4096])
@@ -173,17 +154,6 @@ def test_chosen_points_are_stepped_by_both_alike() -> None:
     np.testing.assert_array_equal(compiled[0], points)
 
 
-def test_equal_points_that_were_chosen_give_the_results_of_equal_steps() -> None:
-    scene = small(90)
-    even = uniform(scene)
-    points = chosen(scene, np.arange(even.steps + 1) * even.step_size)
-    for part, its in zip(
-        stepped(scene, CompiledStepper, points), stepped(scene, CompiledStepper), strict=True
-    ):
-        # the sizes of the steps differ by the rounding of a difference, 1e-16 of 0.1 s in steps of 1 ms
-        np.testing.assert_allclose(part, its, rtol=1e-9, atol=1e-9)
-
-
 def test_a_loom_without_its_constant_shaft_turns_alike_to_the_last_bit() -> None:
     scene = small(180)
     everything = [f"{name}.{variable}" for name, variable in Master(scene).slots]
@@ -194,11 +164,7 @@ def test_a_loom_without_its_constant_shaft_turns_alike_to_the_last_bit() -> None
     for master in (whole, without):
         with master:
             master.initialize()
-            samples = []
-            master.run(
-                5000, lambda *parts, to=samples: to.extend(part.copy() for part in parts), lambda _: None
-            )
-            _times, *found[master] = samples
+            _times, *found[master] = sampled(master)
     for key, (kind, slot) in whole.slots.items():
         other_kind, other_slot = without.slots[key]
         place = 0 if kind == "Real" else 1

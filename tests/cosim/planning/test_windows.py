@@ -271,11 +271,6 @@ def test_mistakes_are_refused(text: str, message: str) -> None:
     assert str(raised.value) == message
 
 
-def test_a_grid_of_another_name_is_refused() -> None:
-    with pytest.raises(LoomfmuError, match=r"grid = 'window' is unknown; did you mean 'windows'"):
-        parsed('grid = "window"')
-
-
 def test_points_are_merged_in_order_of_their_weight() -> None:
     places = windows.Places(
         period=1.0, most=0.25, kinks=np.empty(0), points=[0.3, 0.30001, 0.5, 2.0], about=[0.29999, 0.4]

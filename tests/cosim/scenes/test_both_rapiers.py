@@ -115,27 +115,6 @@ def test_what_is_wrong_is_said(both: str, message: str) -> None:
         parsed(both)
 
 
-def test_the_giver_moves_as_without_a_taker(fmu_cache: None) -> None:
-    rest = '[belt]\nyarn_tension = "1 N"\n'
-    values = ["weft.travel", "weft.shaft_torque", "belt.lowest_margin", "belt.axial_force"]
-    alone, both = (loomfmu.evaluate(parsed(given, rest), values=values).trace for given in ("", BOTH))
-    for signal in values:
-        assert np.array_equal(alone[signal], both[signal]), signal
-
-
-def test_the_weft_compresses_the_givers_belt_and_then_relieves_the_takers(fmu_cache: None) -> None:
-    rest = '[belt]\nyarn_tension = "2 N"\n[belt_2]\nyarn_tension = "2 N"\n'
-    values = [f"{belt}.{force}_force" for belt in ("belt", "belt_2") for force in ("axial", "inertia")]
-    trace = loomfmu.evaluate(parsed(rest=rest), values=values).trace
-    turn = np.degrees(trace["shaft.angle"])
-    before, after = (turn > 1.0) & (turn < 179.0), (turn > 181.0) & (turn < 359.0)
-    loads = [trace[f"{belt}.axial_force"] - trace[f"{belt}.inertia_force"] for belt in ("belt", "belt_2")]
-    # forces of up to 1000 N, rounded
-    for load, (there, back) in zip(loads, ((2.0, 0.0), (0.0, -2.0)), strict=True):
-        np.testing.assert_allclose(load[before], there, atol=1e-12)
-        np.testing.assert_allclose(load[after], back, atol=1e-12)
-
-
 DRIVEN = """
 [shaft]
 component = "DrivenShaft"

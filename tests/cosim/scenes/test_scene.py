@@ -172,9 +172,19 @@ def test_a_wire_can_be_added_replaced_and_cut(lines: str, less: Any, more: Any) 
     assert wired(LOOM, "[wires]\n", lines) == wired(LOOM) - less | more
 
 
-def test_cutting_what_is_not_wired_is_refused() -> None:
-    said = refusal(LOOM, "[wires]\n", wires(belt__travl=False))
-    assert said.startswith("wires: 'belt.travl' is not wired; did you mean 'belt.travel'")
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (
+            LOOM + "[wires]\n" + wires(belt__travl=False),
+            "wires: 'belt.travl' is not wired; did you mean",
+        ),
+        ('coupling = "iterate"', "coupling = 'iterate' is unknown; did you mean 'iterated'"),
+        ('grid = "window"', "grid = 'window' is unknown; did you mean 'windows'"),
+    ],
+)
+def test_a_name_with_a_slip_is_refused(text: str, said: str) -> None:
+    assert refusal(text).startswith(said)
 
 
 CUT = "[wires]\n" + wires(**{f"belt__{each}": False for each in HEAD})

@@ -1,6 +1,6 @@
 """What instances of a standard loom share is set once, and the warp hangs on the carrier."""
 
-from scene_texts import claim, parsed
+from scene_texts import HEAD, MOTION, claim, parsed
 
 from loomfmu.cosim.reading import checked_claims
 from loomfmu.cosim.scenes.values import Values
@@ -121,3 +121,15 @@ def test_values_of_a_prepared_scene_reach_those_that_share_them() -> None:
         assert {n: e.values for n, e in found.instances.items()} == {
             n: e.values for n, e in read.instances.items()
         }
+
+
+def test_the_weft_is_wired_to_head_and_belt_and_changes_nothing_else() -> None:
+    plain = '[loom]\nmachine = "WL680-3600"\n'
+    with_yarn = plain + "yarn = true\n"
+    assert sources(plain).items() <= sources(with_yarn).items()
+    assert dict(sources(with_yarn).items() - sources(plain).items()) == {
+        **{f"yarn.{name}": f"weft.{name}" for name in HEAD},
+        **{f"yarn.shaft_{name}": f"shaft.{name}" for name in MOTION},
+        "belt.yarn_tension": "yarn.tension",
+    }
+    assert "belt.yarn_tension" not in sources(with_yarn + '[wires]\n"belt.yarn_tension" = false\n')

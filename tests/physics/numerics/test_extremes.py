@@ -1,6 +1,5 @@
 """Extremes between samples: against dense samples of the same polynomial, and against a known curve."""
 
-import math
 import random
 
 import numpy as np
@@ -44,22 +43,6 @@ def test_what_was_more_extreme_before_stays() -> None:
 def test_a_step_of_no_length_has_the_lower_end() -> None:
     assert lowest_so_far(9.0, 0.0, 3.0, -1.0, 2.0, 1.0) == 2.0
     assert lowest_by_two_rates(9.0, 0.0, 3.0, -1.0, 0.0, 2.0, 1.0, 0.0) == 2.0
-
-
-@pytest.mark.parametrize("offset", [0.0, 0.3, 0.5, 0.9])
-def test_steps_do_not_decide_what_is_seen_of_a_cosine(offset: float) -> None:
-    h = math.pi / 12.0  # 24 steps in a turn
-    sampled = by_cubic = by_quintic = 1.0
-    for n in range(24):
-        a, b = (n - 1 + offset) * h, (n + offset) * h
-        first, second = ((math.cos(x), -math.sin(x), -math.cos(x)) for x in (a, b))
-        sampled = min(sampled, second[0])
-        by_cubic = lowest_so_far(by_cubic, h, *first[:2], *second[:2])
-        by_quintic = lowest_by_two_rates(by_quintic, h, *first, *second)
-    assert abs(by_cubic + 1.0) <= 1.3 * h**4 / 384.0  # of a cosine, whose derivatives are 1 at most
-    assert abs(by_quintic + 1.0) <= 1.3 * h**6 / 46080.0
-    if offset == 0.5:
-        assert abs(sampled + 1.0) > 0.9 * h**2 / 8.0
 
 
 def test_a_cubic_turns_where_its_derivative_is_zero() -> None:

@@ -47,18 +47,6 @@ def test_any_quintic_comes_back(c, u):
     assert value == pytest.approx(exact, abs=60 * 4e-16 * scale)
 
 
-@given(quintic)
-def test_both_ends_are_met(c):
-    start, end = derivatives(c, 0.0), derivatives(c, 1.0)
-    cubic = joined(*start, *end)
-    scale = max(map(abs, (*start, *end, 1.0)))
-    assert joined_value(start[0], start[1], *cubic, 0.0) == (start[0], start[2])
-    value, second = joined_value(start[0], start[1], *cubic, 1.0)
-    # as above: rounding of the samples, 60 times
-    assert value == pytest.approx(end[0], abs=60 * 4e-16 * scale)
-    assert second == pytest.approx(end[2], abs=60 * 4e-16 * 4 * scale)
-
-
 @given(quintic, st.floats(0.3, 3.0))
 def test_the_change_of_one_bump_gives_the_other(c, ratio):
     # the fourth derivative of a quintic runs on a line, so its fifth is that line's slope, whatever the steps
@@ -115,18 +103,3 @@ def test_largest_between_agrees_with_a_search(cubic):
     found = largest_between(*cubic)
     # a grid of 1/2000 misses at most f''/8 of its square: (2 * 10 + 6 * 10) / 8 / 4e6
     assert searched - 1e-13 <= found <= searched + 2.5e-6
-
-
-@pytest.mark.parametrize(
-    ("cubic", "largest"),
-    [
-        ((-3.0, 0.0, 0.0, 0.0), 3.0),
-        ((0.0, 2.0, 0.0, 0.0), 2.0),
-        ((0.0, -4.0, 4.0, 0.0), 1.0),
-        ((0.0, 27.0, -54.0, 27.0), 4.0),  # 27 u (1 - u)^2, largest at 1/3
-        ((0.0, 0.0, 27.0, -27.0), 4.0),  # its mirror, largest at 2/3
-        ((0.0, 0.0, 0.0, 0.0), 0.0),
-    ],
-)
-def test_largest_between_of_known_cubics(cubic, largest):
-    assert largest_between(*cubic) == pytest.approx(largest, rel=1e-15)  # a few roundings

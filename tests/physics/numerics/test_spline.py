@@ -32,15 +32,6 @@ def test_pieces_are_cubics(piece, share):
         assert found == pytest.approx(float(exact(place, order)), abs=1e-13)
 
 
-@given(pieces)
-def test_pieces_meet_their_knots(piece):
-    length, left, right, left_bend, right_bend = astuple(piece)
-    start, end = cubic_piece(piece, 0.0), cubic_piece(piece, length)
-    # one or two roundings
-    assert (start[0], end[0]) == pytest.approx((left, right), abs=1e-15)
-    assert (start[2], end[2]) == pytest.approx((left_bend, right_bend), abs=1e-15)
-
-
 @given(pieces, st.floats(0.0, 1.0))
 def test_slopes_lie_between_their_extremes(piece, share):
     lowest, highest = slope_extremes(piece)

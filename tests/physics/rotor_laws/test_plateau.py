@@ -75,9 +75,3 @@ def test_peaks_are_exact(reduction, shape):
     assert rates[:, 1].max() <= speed * (1.0 + 1e-15)
     assert abs(rates[:, 2]).max() <= acceleration * (1.0 + 1e-15)
     assert abs(np.diff(rates[:, 2])).max() / grid[1] <= jerk * (1.0 + 1e-9) + 1e-9
-
-
-def test_no_reduction_is_the_uniform_law():
-    for x in (0.0, 1.0, 3.0, 5.0, 2.0 * pi):
-        angle, speed, second = plateau_law(x, 0.0, *INFERRED)
-        assert (angle, speed, second) == (pytest.approx(x, abs=1e-15), 1.0, 0.0)  # 2 pi - (2 pi - x)

@@ -13,10 +13,7 @@ from loomfmu.physics.rotor_laws.rotor import (
     SLOPED_SINE,
     UNIFORM,
     dwell_angle,
-    harmonic_ends,
     rotor_law,
-    sloped_line,
-    sloped_sine,
 )
 
 LAWS = {
@@ -64,23 +61,6 @@ def test_laws_are_symmetric(law, x, reduction):
     assert angle + other == pytest.approx(2.0 * pi, abs=1e-14)
     assert first == pytest.approx(other_first, abs=1e-14)
     assert second == pytest.approx(-other_second, abs=2e-14)
-
-
-@given(law_of_choice, turn, turn, st.floats(0.0, 0.999))
-def test_rotor_never_turns_back(law, one, other, reduction):
-    low, high = min(one, other), max(one, other)
-    assert rotor_law(law, low, reduction)[1] > 0.0
-    # rounding of angles up to 2 pi
-    assert rotor_law(law, low, reduction)[0] <= rotor_law(law, high, reduction)[0] + 1e-14
-
-
-@pytest.mark.parametrize("function", [harmonic_ends, sloped_line, sloped_sine])
-@pytest.mark.parametrize("reduction", REDUCTIONS)
-def test_pieces_join_with_angle_velocity_and_acceleration(function, reduction):
-    knot = pi / 4 if function is harmonic_ends else pi / 8
-    before, after = function(knot, reduction), function(knot + 1e-12, reduction)
-    # 1e-12 further on the angle has grown by as much, and rounding
-    assert after == pytest.approx(before, abs=1e-11)
 
 
 @pytest.mark.few(16)

@@ -46,8 +46,3 @@ def test_spline_is_that_of_scipy(points):
                 # rounding of values up to 1, divided by the step once for each derivative
                 exact = spline(knots[k] + share * step, order)
                 assert found[order] == pytest.approx(exact, abs=1e-14 / step**order * 10.0)
-
-
-def test_weights_fade_by_the_root():
-    # sqrt(3) - 2 for each knot on a long table: the classical decay of a cubic spline
-    assert bend_weight(2, 36) / bend_weight(1, 36) == pytest.approx(3.0**0.5 - 2.0, rel=1e-14)  # z^34 is 0

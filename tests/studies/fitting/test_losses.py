@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import least_squares
 
-from loomfmu.studies.fitting.losses import LOSSES
+from loomfmu.studies.fitting.search import LOSSES
 
 
 @pytest.mark.parametrize("name", LOSSES)

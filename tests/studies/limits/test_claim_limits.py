@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
-from loomfmu import LoomfmuError, limit, prepare
+from loomfmu import Boundary, LoomfmuError, limit, prepare
 from loomfmu.cosim.scenes.scene import Scene, parse
 from loomfmu.design import loom as design
 from loomfmu.machines import MACHINES
@@ -262,6 +262,12 @@ def test_a_claim_that_cannot_be_judged_says_why() -> None:
         ({"vary": "shaft.speed", "points": 2}, "points = 2 must be a whole number from 3 to"),
         ({"vary": ["shaft.speed", "shaft.speed=1..2"]}, "shaft.speed and shaft.speed both set shaft.speed"),
         ({"vary": ["shaft.speed", "heald.stroke"], "rows": 1}, "rows = 1 must be a whole number from 2 to"),
+        ({"vary": "shaft.speed", "rows": 4}, "rows = 4 is how many values of a second variable are taken"),
+        (
+            {"vary": "damper.spring_stiffness=1..20N/mm"},
+            "vary damper.spring_stiffness: '1..20N/mm': 1 has",
+        ),
+        ({"vary": "weft.speed=300rpm..900rpm"}, "weft.speed has no effect: set weft.follow_shaft = false"),
     ],
 )
 def test_what_cannot_be_searched_is_refused_in_one_line(given: dict[str, Any], said: str) -> None:
@@ -329,3 +335,54 @@ def test_a_claim_that_is_undecided_in_part_of_the_range_does_not_hold_everywhere
     assert rows(found)[0][1] == "up to 450 rev/min"
     assert f"The first that is not sure to hold is '{one.claim}' above this range." in str(found)
     assert f"At 500 rev/min '{one.claim}' is undecided: numerical error 1." in str(found)
+
+
+# ---- over a second variable
+
+TURNS = {"revolutions": 2}
+
+
+def boundary() -> Boundary:
+    vary = ["shaft.speed=300rpm..900rpm", "belt.guide_clearance=0.2mm..0.8mm"]
+    found = limit(DEMO, vary=vary, set=TURNS, points=5, rows=3)
+    assert isinstance(found, Boundary)
+    return found
+
+
+@pytest.mark.slow
+def test_each_row_is_the_limit_at_a_value_of_the_second_variable() -> None:
+    found = boundary()
+    assert found and found.values == pytest.approx([0.2e-3, 0.5e-3, 0.8e-3], rel=1e-15)
+    assert (found.values[0], found.values[-1]) == (0.2e-3, 0.8e-3)  # the ends are what was written
+    for clearance, row in zip(found.values, found.rows, strict=True):
+        safe = design.safe_speed("WL680-3600", clearance=clearance).speed
+        (held,) = row.ranges
+        assert held.high == pytest.approx(safe * math.sqrt(0.9), rel=1e-9)
+        assert held.above == "the belt keeps a margin of 10 %"
+        (speed,) = row.claims[1].limits
+        assert speed.value == pytest.approx(safe, rel=1e-9)
+    single = limit(
+        DEMO, vary="shaft.speed=300rpm..900rpm", set=TURNS | {"belt.guide_clearance": "0.5 mm"}, points=5
+    )
+    assert found.rows[1].ranges == single.ranges
+
+
+def test_a_boundary_is_shown_as_a_table() -> None:
+    found = boundary()
+    assert repr(found) == (
+        "<Boundary of WL680-3600, G6300 left, weave 10/01/10/01; revolutions = 2: shaft.speed at 3 values of"
+        " belt.guide_clearance>"
+    )
+    html = found._repr_html_()
+    assert "belt.guide_clearance [mm]" in html and "300 to 679.7492 rev/min" in html
+
+
+def test_a_value_of_the_second_variable_that_cannot_be_run_is_named() -> None:
+    with pytest.raises(LoomfmuError, match=r"^at heald\.stroke = 10 mm: .*claim 'clear_shed' of heald_1"):
+        limit(
+            DEMO,
+            vary=["shaft.speed=300rpm..900rpm", "heald.stroke=10mm..98mm"],
+            set=TURNS,
+            points=3,
+            rows=2,
+        )

@@ -9,8 +9,7 @@ import pytest
 
 from loomfmu.cli import main
 from loomfmu.design import loom as design
-from loomfmu.studies.limits.boundary import ROWS
-from loomfmu.studies.limits.limits import POINTS
+from loomfmu.studies.limits.limits import POINTS, ROWS
 
 DEMO = str(Path(__file__).parents[3] / "sims" / "wl680_3600.toml")
 DAMPER = str(Path(__file__).parents[3] / "sims" / "damper.toml")
@@ -71,6 +70,7 @@ def test_the_help_states_the_defaults(capsys: pytest.CaptureFixture[str]) -> Non
     said = " ".join(capsys.readouterr().out.split())
     assert f"values of the first that are tried first ({POINTS})" in said
     assert f"values of the second that are taken ({ROWS})" in said
+    assert "Exit status: 0 all claims hold in some range; 1 in none; 2 bad input" in said
 
 
 def test_a_wide_terminal_has_a_table(
@@ -158,25 +158,8 @@ def test_pictures_are_written_and_repeat(arguments: list[str]) -> None:
         ([*SPEED, "--output", "limits.txt"], "limits.txt: use .csv for a table, or .svg, .png or .pdf"),
         ([*SPEED, "--output", "notes.csv"], "notes.csv: exists and is not a table of limits; --force"),
         (
-            ["limit", DEMO, "--vary", "shaft.speed", "--from", "9rpm", "--to", "3rpm"],
-            "shaft.speed: the range from 9",
-        ),
-        (
-            ["limit", DEMO, "--vary", "damper.spring_stiffness=1..20N/mm"],
-            "vary damper.spring_stiffness: '1..20N/mm': 1 has no unit; give both ends theirs",
-        ),
-        (
-            ["limit", DEMO, "--vary", "a=1..2", "--vary", "b", "--vary", "c"],
+            ["limit", DEMO, *["--vary", "a=1..2", "--vary", "b", "--vary", "c"]],
             "vary = ['a=1..2', 'b', 'c'] must be",
-        ),
-        (["limit", "none.toml", "--vary", "shaft.speed"], "none.toml: cannot be read"),
-        (
-            ["limit", DEMO, "--vary", "weft.speed=300rpm..900rpm"],
-            "weft.speed has no effect: set weft.follow_shaft = false",
-        ),
-        (
-            ["limit", DEMO, "--vary", "shaft.speed", "--rows", "4"],
-            "rows = 4 is how many values of a second variable are taken",
         ),
     ],
 )

@@ -18,7 +18,18 @@ from ..importing.calls import Rollback
 from ..importing.slave import Ended, Slave
 from ..scenes.graph import Wire
 from .grid import Span
-from .steppers import Action, Advanced, CompiledStepper, Memory, Rows, Stepper, compiled_library, take
+from .steppers import (
+    Action,
+    Advanced,
+    CompiledStepper,
+    Memory,
+    Rows,
+    Stepper,
+    arrays,
+    compiled_library,
+    fields,
+    take,
+)
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int32]
@@ -170,26 +181,14 @@ class CompiledIteration(CompiledStepper):
         self._integers = np.empty_like(memory.integers)
         rollbacks = [found for slave in self._slaves if (found := slave.rollback())]
         self._rollbacks = (Rollback * len(self._slaves))(*rollbacks)
+        solver = self._solver
+        memories = (solver.differences, solver.largest, solver.inverse, self._room, self._integers)
         self._struct = _Loop(
-            loop.first,
-            loop.end,
-            ctypes.addressof(self._rollbacks),
-            len(self._rollbacks),
-            self._slots.ctypes.data,
-            len(self._slots),
-            MOST_EXCHANGES,
-            FEW,
-            STALLS,
-            ORDERS,
-            TOLERANCE,
-            SMALL,
-            ROUNDING,
-            FLAT,
-            self._solver.differences.ctypes.data,
-            self._solver.largest.ctypes.data,
-            self._solver.inverse.ctypes.data,
-            self._room.ctypes.data,
-            self._integers.ctypes.data,
+            *(loop.first, loop.end),
+            *(ctypes.addressof(self._rollbacks), len(self._rollbacks)),
+            *(self._slots.ctypes.data, len(self._slots)),
+            *(MOST_EXCHANGES, FEW, STALLS, ORDERS, TOLERANCE, SMALL, ROUNDING, FLAT),
+            *(each.ctypes.data for each in memories),
         )
         super().__init__(library, loop.actions, memory, ctypes.addressof(self._struct))
 
@@ -205,27 +204,13 @@ class CompiledIteration(CompiledStepper):
 
 
 class _Loop(ctypes.Structure):
-    _fields_ = (
-        ("first", ctypes.c_size_t),
-        ("end", ctypes.c_size_t),
-        ("rollbacks", ctypes.c_void_p),
-        ("rollback_count", ctypes.c_size_t),
-        ("slots", ctypes.c_void_p),
-        ("count", ctypes.c_size_t),
-        ("most_exchanges", ctypes.c_int64),
-        ("few", ctypes.c_int64),
-        ("stalls", ctypes.c_int64),
-        ("orders", ctypes.c_int64),
-        ("tolerance", ctypes.c_double),
-        ("small", ctypes.c_double),
-        ("rounding", ctypes.c_double),
-        ("flat", ctypes.c_double),
-        ("differences", ctypes.c_void_p),
-        ("largest", ctypes.c_void_p),
-        ("inverse", ctypes.c_void_p),
-        ("room", ctypes.c_void_p),
-        ("integers", ctypes.c_void_p),
-    )
+    _fields_ = [
+        *fields(first="size_t", end="size_t"),
+        *arrays("rollbacks", "slots"),
+        *fields(most_exchanges="int64", few="int64", stalls="int64", orders="int64"),
+        *fields(tolerance="double", small="double", rounding="double", flat="double"),
+        *fields(differences="void_p", largest="void_p", inverse="void_p", room="void_p", integers="void_p"),
+    ]
 
 
 class Iteration:

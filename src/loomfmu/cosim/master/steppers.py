@@ -169,27 +169,29 @@ class PythonStepper:
         return len(span), None
 
 
+def fields(**kinds: str) -> list[tuple[str, Any]]:
+    """Return the fields of a C structure: their names by the kind of each, such as `x="size_t void_p"`.
+
+    >>> fields(number="int64", place="void_p") == [("number", ctypes.c_int64), ("place", ctypes.c_void_p)]
+    True
+    """
+    return [(name, getattr(ctypes, f"c_{kind}")) for name, kind in kinds.items()]
+
+
+def arrays(*names: str) -> list[tuple[str, Any]]:
+    """Return the fields of some arrays: where each is, and its length."""
+    return [field for name in names for field in fields(**{name: "void_p", f"{name}_count": "size_t"})]
+
+
 class _Plan(ctypes.Structure):
-    _fields_ = (
-        ("calls", ctypes.c_void_p),
-        ("call_count", ctypes.c_size_t),
-        ("reals", ctypes.c_void_p),
-        ("real_count", ctypes.c_size_t),
-        ("integers", ctypes.c_void_p),
-        ("integer_count", ctypes.c_size_t),
-        ("driven_reals", ctypes.c_void_p),
-        ("driven_real_count", ctypes.c_size_t),
-        ("driven_integers", ctypes.c_void_p),
-        ("driven_integer_count", ctypes.c_size_t),
-        ("interrupted", ctypes.c_void_p),
-        ("loop", ctypes.c_void_p),
-        ("environment", ctypes.c_void_p),
-        ("control", ctypes.c_uint64),
-    )
+    _fields_ = [
+        *arrays("calls", "reals", "integers", "driven_reals", "driven_integers"),
+        *fields(interrupted="void_p", loop="void_p", environment="void_p", control="uint64"),
+    ]
 
 
 class _Outcome(ctypes.Structure):
-    _fields_ = (("call", ctypes.c_int64), ("status", ctypes.c_int64))
+    _fields_ = fields(call="int64", status="int64")
 
 
 class CompiledStepper:

@@ -5,7 +5,7 @@ such as claims and what is recorded, is in the text of the scene that our own pa
 tool's package runs by seconds and records all outputs.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -128,28 +128,35 @@ class _Reader:
         """The values of each instance in the order they are set: those of outer systems last."""
         values = {name: list(bound(each.element, self.package.root)) for name, each in found.items()}
         dotted = {".".join(each.path): name for name, each in found.items()}
-        most = max(name.count(".") for name in dotted) + 1
         for path, element in reversed(list(systems(system))):  # the outermost last: it prevails
             for given in bound(element, self.package.root):
-                parts = (*path, *given.name.split(".", most))
-                heads = ((".".join(parts[:end]), end) for end in range(len(path) + 1, len(parts)))
-                name, end = next(((dotted[head], end) for head, end in heads if head in dotted), ("", 0))
-                whole = ".".join(parts)
-                node = next((each for each in _nodes(whole) if each in passing), None)
-                inside = passing[node] if node else None
-                takers = nets.reached(node, inside or given.unit) if node else []
-                if name:
-                    values[name].append(replace(given, name=".".join(parts[end:])))
-                elif node is None:
-                    self.notes.append(f"{whole} of the package is ignored: there is no such component")
-                elif not takers:
-                    self.notes.append(f"{whole} of the package is ignored: no free input takes it")
-                for taken in [] if name else takers:
-                    taker, variable = nets.variable(taken.node)
-                    entered = conversion(whole, given.unit, "its connector", inside)
-                    made = entered.then(given.transformation).then(taken.conversion)
-                    values[taker].append(replace(given, name=variable, unit=taken.unit, transformation=made))
+                taken = _in_component(path, given, dotted) or self._by_wires(path, given, passing, nets)
+                for name, value in taken:
+                    values[name].append(value)
         return values
+
+    def _by_wires(
+        self, path: Sequence[str], given: Given, passing: Mapping[Node, Stated | None], nets: Nets
+    ) -> list[tuple[str, Given]]:
+        """The instances to which a system's connector leads, each with the value under its own name for it.
+
+        Notes a value that no instance takes.
+        """
+        whole = ".".join((*path, given.name))
+        node = next((each for each in _nodes(whole) if each in passing), None)
+        inside = passing[node] if node else None
+        takers = nets.reached(node, inside or given.unit) if node else []
+        if not takers:
+            reason = "there is no such component" if node is None else "no free input takes it"
+            self.notes.append(f"{whole} of the package is ignored: {reason}")
+            return []
+        entered = conversion(whole, given.unit, "its connector", inside).then(given.transformation)
+        found = []
+        for taken in takers:
+            name, variable = nets.variable(taken.node)
+            made = entered.then(taken.conversion)
+            found.append((name, replace(given, name=variable, unit=taken.unit, transformation=made)))
+        return found
 
     def _instance(self, name: str, element: Element, stated: Any) -> Instance:
         """An instance; `stated` are units."""
@@ -198,6 +205,19 @@ class _Reader:
             required(fixed, "baseStepSize")
             tables["step"] = real(fixed, "baseStepSize", 0.0)
         return tables
+
+
+def _in_component(path: Sequence[str], given: Given, dotted: Mapping[str, str]) -> list[tuple[str, Given]]:
+    """The instance that a value of a system names, and the value under its own name for it; none otherwise.
+
+    `dotted` are the instances by the names of the systems around them and their own, joined by dots.
+    """
+    most = max(name.count(".") for name in dotted) + 1
+    parts = (*path, *given.name.split(".", most))
+    for end in range(len(path) + 1, len(parts)):
+        if name := dotted.get(".".join(parts[:end])):
+            return [(name, replace(given, name=".".join(parts[end:])))]
+    return []
 
 
 def _our_tables(text: dict[str, Any], annotation: Element) -> dict[str, Any]:

@@ -18,9 +18,6 @@ def lowest_so_far(
         start, start_rate: value and rate at the last sample
         end, end_rate: the same at this one
 
-    Returns:
-        lowest value up to this sample
-
     >>> lowest_so_far(0.0, 2.0, 0.0, -2.0, 0.0, 2.0)  # x^2 - 2 x between 0 and 2
     -1.0
     """
@@ -71,15 +68,7 @@ def lowest_by_two_rates(
     """Lowest value of a signal so far, on the quintic between samples: its second rate is known as well.
 
     The quintic is off by `h^6 s'''''' / 46080`. It is searched in eighths of the step, each for one turn.
-
-    Args:
-        lowest: lowest value up to the last sample
-        step: time, or whatever the rates are taken by, from the last sample to this one
-        start, start_rate, start_second: value and rates at the last sample
-        end, end_rate, end_second: the same at this one
-
-    Returns:
-        lowest value up to this sample
+    Arguments as for `lowest_so_far`, with second rates.
 
     (x - 1)^4 from 0 to 2:
 

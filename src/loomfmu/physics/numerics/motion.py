@@ -121,14 +121,12 @@ def expected_bump(before: float, step_before: float, by_rate: float, step: float
 
     Each gives the fourth derivative in the middle of its step, `-2 a / h^4`; their difference over the
     distance of the middles is the fifth. The noise is that of the rates, so the estimate is good where the
-    bump from the values is lost in noise; at coarse steps it is less accurate, by one order.
+    bump from the values is lost in noise; at coarse steps it is less accurate, by one order. It is 0 if the
+    steps differ too much.
 
     Args:
         before, step_before: bump of the rate over the step before, and that step [s or rad]; 0 for none
         by_rate, step: the same of the present step
-
-    Returns:
-        bump; 0 if the steps differ too much
 
     >>> round(expected_bump(-60.0 * 0.5, 1.0, -60.0 * 1.5, 1.0), 12)  # u^5 from 0 to 1 and on to 2
     10.0

@@ -11,7 +11,9 @@ NONCIRCULAR_GEARS = 6
 
 
 def slotted_lever(x: float, radius: float, eccentricity: float) -> tuple[float, float, float, float]:
-    """Angle of a slotted lever about its own axis while its pin turns uniformly about another, from (1.12).
+    """Angle of a slotted lever about its own axis [rad], its pin turning evenly about another, from (1.12).
+
+    Returned with its first, second and third derivative.
 
     With q = radius, e = eccentricity and the slow point at x = 0:
 
@@ -24,9 +26,6 @@ def slotted_lever(x: float, radius: float, eccentricity: float) -> tuple[float, 
         x: angle of the pin about its axis, from the slow point [rad]
         radius: of the pin [m]
         eccentricity: distance of the two axes, 0 to less than radius [m]
-
-    Returns:
-        G [rad] and its first, second and third derivative [1]
 
     >>> slotted_lever(0.0, 3.0, 1.0)[:2]
     (0.0, 0.75)
@@ -50,7 +49,7 @@ def slotted_lever(x: float, radius: float, eccentricity: float) -> tuple[float, 
 def slotted_levers(
     x: float, lever_radius: float, driven_radius: float, eccentricity: float
 ) -> tuple[float, float, float, float]:
-    """Rotor angle of the drive with eccentric slotted levers, from equation (1.12), and its derivatives.
+    """Rotor angle of the drive with eccentric slotted levers, from (1.12): S [rad], S', S'', S''' [1].
 
     The source gives only the speed, with the slow point at alpha = pi. Its integral, with
     F(x; q, e) = x + atan2(e sin x, q - e cos x) and r, b, e the three arguments:
@@ -65,9 +64,6 @@ def slotted_levers(
         lever_radius: r, of the pin on the driving pulley about the shaft [m]
         driven_radius: b, of the pin on the lever about the eccentric [m]
         eccentricity: e, of the eccentric from the shaft, 0 to less than both radii [m]
-
-    Returns:
-        S [rad], S' [1], S'' [1], S''' [1]
 
     >>> [round(value, 6) for value in slotted_levers(0.0, 0.1, 0.1, 0.025)[:2]]
     [0.0, 0.64]
@@ -94,7 +90,7 @@ def slotted_levers_place(
 def noncircular_gears(
     x: float, a1: float, a2: float, a3: float, a4: float
 ) -> tuple[float, float, float, float]:
-    """Rotor angle of the drive with a round and a non-circular gear, equations (1.13) to (1.15).
+    """Rotor angle of a round and a non-circular gear, equations (1.13) to (1.15): S [rad], S', S'', S''' [1].
 
         S = x + sum over k = 1..4 of (a_k / k) sin k x
 
@@ -104,9 +100,6 @@ def noncircular_gears(
     Args:
         x: shaft angle from the slow point [rad]
         a1, a2, a3, a4: relative amplitudes of the first four harmonics of the speed [1]
-
-    Returns:
-        S [rad], S' [1], S'' [1], S''' [1]
 
     >>> noncircular_gears(0.0, -0.25, -0.125, -0.0625, -0.0625)[:2]
     (0.0, 0.5)

@@ -21,7 +21,7 @@ def rise(reduction: float, plateau: float, ramp: float) -> float:
 
 
 def plateau_law(x: float, reduction: float, plateau: float, ramp: float) -> tuple[float, float, float]:
-    """Rotor angle over one turn, `0 <= x <= 2 pi`, and its derivatives; `S(2 pi - x) = 2 pi - S(x)`.
+    """S [rad], S' and S'' [1] over one turn of the rotor, `0 <= x <= 2 pi`, with `S(2 pi - x) = 2 pi - S(x)`.
 
     With z = reduction, p = plateau, r = ramp, D from `rise` and u = (x - p) / r, for half a turn:
 
@@ -36,9 +36,6 @@ def plateau_law(x: float, reduction: float, plateau: float, ramp: float) -> tupl
         reduction: relative speed reduction on the plateau, 0 to 1 [1]
         plateau: shaft angle from the slow point to the end of the plateau, not negative [rad]
         ramp: shaft angle of the ramp, positive; `plateau + ramp <= pi` [rad]
-
-    Returns:
-        S [rad], S' [1], S'' [1]
 
     >>> [round(value, 12) for value in plateau_law(0.5, 0.7, 0.5, 1.0)]
     [0.15, 0.3, 0.0]
@@ -71,12 +68,9 @@ def plateau_law_half(x: float, reduction: float, plateau: float, ramp: float) ->
 
 
 def plateau_peaks(reduction: float, plateau: float, ramp: float) -> tuple[float, float, float]:
-    """Largest speed `1 - z + D`, acceleration `2 D / r` and jerk `2 pi D / r^2` of the law.
+    """Largest speed `1 - z + D`, acceleration `2 D / r` and jerk `2 pi D / r^2` of the law [1].
 
     Arguments as for `plateau_law`.
-
-    Returns:
-        largest S' [1], |S''| [1], |S'''| [1]
 
     >>> [round(rate, 3) for rate in plateau_peaks(0.7, 0.25 * pi, 5 * pi / 22)]
     [1.4, 3.081, 13.557]

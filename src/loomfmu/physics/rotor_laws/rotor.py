@@ -6,6 +6,8 @@ speeds up in between. Source: Korolev, thesis on rotary dobbies (Moscow), sectio
 which the printed (3.7), (3.13), (3.22) and (3.24) do not.
 
 All four laws are symmetric, `S(2 pi - x) = 2 pi - S(x)`, so each is written for half a turn.
+
+Arguments: x, the shaft angle from the slow point [rad], and the `reduction` z of the speed there, 0 to 1 [1].
 """
 
 from math import asin, cos, pi, sin, sqrt
@@ -19,14 +21,7 @@ SLOPED_SINE = 4
 
 
 def harmonic_ends(x: float, reduction: float) -> tuple[float, float, float]:
-    """Law with harmonic ends and constant speed between, equations (3.1) to (3.6), `0 <= x <= pi`.
-
-    Args:
-        x: shaft angle from the slow point [rad]
-        reduction: z, relative speed reduction at the slow point [1]
-
-    Returns:
-        S [rad], S' [1], S'' [1]
+    """S [rad], S', S'' [1] of harmonic ends with constant speed between, (3.1) to (3.6), `0 <= x <= pi`.
 
     >>> round(max(harmonic_ends(x / 100, 0.7)[2] for x in range(315)), 3)  # the source's figure
     1.6
@@ -122,15 +117,10 @@ def _half_turn(law: int, x: float, reduction: float) -> tuple[float, float, floa
 
 
 def rotor_law(law: int, x: float, reduction: float) -> tuple[float, float, float]:
-    """Rotor angle of a law over one turn, `0 <= x <= 2 pi`, and its derivatives.
+    """Rotor angle S [rad] of a law over one turn, `0 <= x <= 2 pi`, and S' and S'' [1].
 
     Args:
         law: 1 uniform, 2 harmonic ends, 3 sloped line, 4 sloped sine
-        x: shaft angle from the slow point [rad]
-        reduction: relative speed reduction at the slow point, 0 to 1 [1]
-
-    Returns:
-        S [rad], S' [1], S'' [1]
 
     >>> [round(rotor_law(law, 2 * pi, 0.7)[0] - 2 * pi, 12) for law in (1, 2, 3, 4)]
     [0.0, 0.0, 0.0, 0.0]
@@ -142,18 +132,11 @@ def rotor_law(law: int, x: float, reduction: float) -> tuple[float, float, float
 
 
 def dwell_angle(law: int, reduction: float, tolerance: float) -> float:
-    """Shaft angle during which a changing frame stays within a share of its stroke, section 2.5.
+    """Shaft angle [rad] during which a changing frame stays within a share of its stroke, section 2.5.
 
     The frame is `(1 - cos(S/2)) / 2` of its stroke away from its end; the dwell is symmetric about the slow
     point, so it is twice the x at which `S = 4 asin(sqrt(tolerance))`, found to rounding by Newton steps
-    kept inside a bracket.
-
-    Args:
-        law, reduction: as for `rotor_law`
-        tolerance: share of the stroke, 0 to 1/2 [1]
-
-    Returns:
-        dwell [rad of shaft angle]
+    kept inside a bracket. The tolerance is at most 1/2.
 
     >>> from math import degrees
     >>> round(degrees(dwell_angle(HARMONIC_ENDS, 0.7, 0.015)), 1)
@@ -178,16 +161,10 @@ def dwell_angle(law: int, reduction: float, tolerance: float) -> float:
 
 
 def highest_rates(law: int, reduction: float) -> tuple[float, float, float]:
-    """Largest speed, acceleration and jerk of a law, from its pieces.
+    """Largest speed, acceleration and jerk of a law [1], from its pieces.
 
     The speed is highest at `x = pi`, the acceleration at the crest of an end piece, and the jerk at the slow
     point.
-
-    Args:
-        law, reduction: as for `rotor_law`
-
-    Returns:
-        largest S' [1], |S''| [1], |S'''| [1]
 
     >>> [round(rate, 3) for rate in highest_rates(HARMONIC_ENDS, 0.7)]
     [1.1, 1.6, 6.4]

@@ -10,7 +10,7 @@ SPLINE_CAM = 7
 
 
 def not_a_knot(x: list[float], y: list[float]) -> list[float]:
-    """Second derivatives at six points of the cubic spline with "cubic ends", Appendix 2.
+    """Second derivatives M1 to M6 at six points of the cubic spline with "cubic ends", Appendix 2.
 
     The first two pieces are one cubic, and so are the last two. With h the distances between the points
     and d the slopes of the chords, for i = 2..5
@@ -22,9 +22,6 @@ def not_a_knot(x: list[float], y: list[float]) -> list[float]:
     Args:
         x: places, increasing
         y: values there
-
-    Returns:
-        second derivatives M1 to M6
 
     >>> places = [0, 1, 2, 4, 5, 6]
     >>> [round(bend, 12) for bend in not_a_knot(places, [place**3 for place in places])]
@@ -61,7 +58,7 @@ def not_a_knot(x: list[float], y: list[float]) -> list[float]:
 
 
 def cam_phase(x: float, top: float) -> tuple[float, float]:
-    """Rotor angle as the phase of the cam, and its derivative: linear to either side of the top.
+    """Rotor angle as the phase of the cam [rad], its derivative by x [1]: linear to either side of the top.
 
     A frame driven by the cam has no crank; its rotor angle only shows the pick: 0 at the start of the
     spline, 2 pi at the highest point, 4 pi at the end of two picks.
@@ -69,9 +66,6 @@ def cam_phase(x: float, top: float) -> tuple[float, float]:
     Args:
         x: shaft angle from the start of the spline, 0 to 4 pi [rad]
         top: shaft angle of the highest point, between 0 and 4 pi [rad]
-
-    Returns:
-        phase [rad], its derivative by x [1]
 
     >>> cam_phase(pi, 2.0 * pi) == (pi, 1.0)
     True

@@ -10,7 +10,7 @@ TABLE = 8
 
 
 def bend_weight(distance: int, points: int) -> float:
-    """Weight of a second difference in the second derivative of the periodic spline, some knots away.
+    """Weight [1/rad2] of a second difference in the spline's second derivative, some knots away.
 
     With h = 2 pi / n between the knots the second derivatives M solve
 
@@ -23,9 +23,6 @@ def bend_weight(distance: int, points: int) -> float:
     Args:
         distance: m, 0 to points - 1
         points: n, knots in a turn, at least 3
-
-    Returns:
-        factor of D(k+m), 6 / h^2 included [1/rad2]
 
     >>> even = sum(bend_weight(m, 36) for m in range(36))  # all D alike: M = D / h^2
     >>> round(even * (2 * pi / 36) ** 2, 12)

@@ -1,14 +1,17 @@
-"""`fit`: parameters of a scene from measured curves, by bounded least squares."""
+"""`fit`: parameters of a scene from measured curves, by bounded least squares, and cautions about them."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from ... import units
 from ...cosim.provenance import texts
 from ...cosim.reading import checked, protected
 from ...cosim.run import prepare
@@ -19,39 +22,32 @@ from ...errors import LoomfmuError, listed, shown, suggestion
 from .. import rewritten
 from ..span import Span, set_twice, span_of, warnings_of
 from . import measured
-from .cautions import MORE, UNTRUSTED, cautions
-from .curves import Compared, Floats
-from .independence import Residuals, Shift
-from .intervals import Fitted, sure
-from .losses import LEAST_SQUARES, LOSSES
-from .measured import Measured
-from .offset import offset_of
-from .search import Search, settings
+from .curves import Compared
+from .intervals import Fitted, Sure, doubtful, sure
+from .measured import DISPLAY, Measured, offset_of
+from .search import LEAST_SQUARES, LOSSES, Search, settings
 
 HEADINGS = ("parameter", "fitted", "95 % interval", "in the scene")
+MORE = 10  # values than parameters, of each signal whose noise must be known
+UNTRUSTED = "not to be trusted"  # of an interval
+REACH = 2.0  # standard errors: what the residuals would not show
+LARGEST = 2.0 * math.pi  # offset that is worth a word [rad or s]: a revolution
+STRONG = 0.9  # correlation that is worth a word
 
 
 @dataclass(frozen=True, repr=False)
-class Fit:
+class Fit(Sure):
     """Parameters of a scene that come closest to a measurement.
 
-    It is false where a signal is hardly explained, or a parameter ended at an end of its range.
-    `correlations`, shape (p, p), are those of the parameters' errors, NaN for one at its bound. `curves` has
-    for each signal what was measured, what is computed there and the root mean square of the difference;
-    `residuals` and `shift` say whether these differences are independent, as the intervals assume: each
-    signal's, and all with an offset of the data, unless that is fitted. `notes` say what to be careful about.
+    It is false where a signal is hardly explained, or a parameter ended at an end of its range. `curves` has
+    for each signal what was measured, what is computed there and the root mean square of the difference.
     """
 
     scene: Scene
     data: Measured
-    parameters: tuple[Fitted, ...]
-    correlations: Floats = field(compare=False)
     curves: tuple[Compared, ...]
-    residuals: tuple[Residuals, ...]
-    shift: Shift | None
     loss: str
     runs: int
-    notes: tuple[str, ...]
     warnings: tuple[str, ...] = ()
 
     def __bool__(self) -> bool:
@@ -67,6 +63,11 @@ class Fit:
     def trusted(self) -> bool:
         """Return whether the intervals can be trusted: no test rejects independent residuals."""
         return all(each.trusted for each in self.parameters)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Cautions: residuals that are not noise, ends of ranges, correlations, coarse steps."""
+        return tuple(_cautions(self))
 
     @property
     def values(self) -> dict[str, Any]:
@@ -169,19 +170,14 @@ def fit(
         ended = search.found()
         known = sure(found, spans, ended, LOSSES[loss])
         warnings = warnings_of(spans, loom.evaluate().warnings)
-    notes = cautions(ended.curves, known, found.over)
     return Fit(
-        loom.scene,
-        found,
-        known.parameters,
-        known.correlations,
-        ended.curves,
-        known.residuals,
-        known.offset,
-        loss,
-        search.runs,
-        notes,
-        warnings,
+        **vars(known),
+        scene=loom.scene,
+        data=found,
+        curves=ended.curves,
+        loss=loss,
+        runs=search.runs,
+        warnings=warnings,
     )
 
 
@@ -205,3 +201,69 @@ def _check(spans: Sequence[Span], data: Measured, loss: str) -> None:
             f"{data.path}: {data.count} value{'s' * (data.count != 1)} cannot determine {len(spans)}"
             f" parameter{'s' * (len(spans) != 1)} with intervals"
         )
+
+
+def _cautions(found: Fit) -> Iterator[str]:
+    unexplained = [each for each in found.curves if not each.explained]
+    for curve in unexplained:
+        yield f"{curve.signal}: the fit {_explains(curve.share)}; check the units and the rest of the scene"
+    yield from _dependent(found)
+    for each in found.parameters:
+        if each.high - each.low > each.span.high - each.span.low:
+            yield (
+                f"the data do not determine {each.span.key}: its interval is wider than the range that was"
+                " searched"
+            )
+    remedy = "" if unexplained else ": widen it"
+    for each in found.parameters:
+        if each.at_bound:
+            yield f"{each.span.key} ended at {each.span.show(each.value)}, the end of its range{remedy}"
+    for one, two in combinations(range(len(found.parameters)), 2):
+        correlation = float(found.correlations[one, two])
+        if abs(correlation) >= STRONG:
+            names = listed(found.parameters[each].span.key for each in (one, two))
+            yield f"errors of {names} are correlated ({correlation:.3f}): the data barely tell them apart"
+    yield from (curve.note for curve in found.curves if curve.note)
+
+
+def _explains(share: float) -> str:
+    """Say how little a fit explains that leaves this share of the variation of the data."""
+    if math.isinf(share):
+        return "does not reach the data, which do not vary"
+    if share >= 1.0:
+        return "explains nothing of the variation of the data"
+    return f"leaves {100.0 * share:.3g} % of the variation of the data unexplained"
+
+
+def _dependent(found: Fit) -> Iterator[str]:
+    """Yield evidence against independent residuals, and the consequences."""
+    doubts = doubtful(found.residuals, found.shift)
+    for each in found.residuals:
+        if each in doubts:
+            yield (
+                f"{each.signal}: residuals are not independent: Durbin-Watson {each.durbin_watson:.2f} where"
+                f" {each.expected_durbin_watson:.2f} is expected, {each.runs} runs of one sign where"
+                f" {each.expected_runs:.0f} are; the intervals are {UNTRUSTED}: the scene lacks something, or"
+                " the noise is filtered"
+            )
+        elif each.count < len(found.parameters) + MORE:
+            yield f"{each.signal}: {each.count} values are too few to see whether residuals are independent"
+    if found.shift is None:
+        return
+    if found.shift in doubts:
+        size, error = (_offset(found, value) for value in (found.shift.size, REACH * found.shift.error))
+        yield (
+            f"the residuals show an offset of the data, {size} +- {error} to be added to all places; the"
+            f" intervals are {UNTRUSTED}: --offset fits it"
+        )
+        return
+    for one in found.parameters:
+        if one.shift < min(REACH * found.shift.error, LARGEST):
+            yield (
+                f"{one.span.key}: an offset of the data of {_offset(found, one.shift)} moves it to the end of"
+                " its interval, and the residuals would not show it: --offset allows for it"
+            )
+
+
+def _offset(found: Fit, value: float) -> str:
+    return units.show(float(f"{value:.2g}"), DISPLAY[found.data.over])

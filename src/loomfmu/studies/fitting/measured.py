@@ -1,10 +1,11 @@
-"""Measured curves over shaft angle or time, read from CSV or from a trace."""
+"""Measured curves over shaft angle or time, read from CSV or from a trace, and an offset of their places."""
 
 import csv
 import math
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 
@@ -16,8 +17,10 @@ from ...cosim.planning.requested import output_port
 from ...cosim.scenes.scene import Scene
 from ...errors import LoomfmuError, listed, shown
 from ...files import text_of
+from ...sweeps.varied import Varied
 from ...traces import Trace
 from ...traces.damage import check
+from ..span import Span
 
 Floats = NDArray[np.float64]
 ALONG = {"shaft_angle": "rad", "time": "s"}  # what curves are measured over: name of the column, unit in SI
@@ -191,4 +194,34 @@ def _value(where: str, text: str) -> float:
         raise LoomfmuError(f"{where}: {shown(text)} is not a number") from None
     if not math.isfinite(value):
         raise LoomfmuError(f"{where}: {text} is not finite")
+    return value
+
+
+DISPLAY = {"shaft_angle": "deg", "time": "ms"}
+USUAL = {"shaft_angle": "-2deg..2deg", "time": "-2ms..2ms"}
+
+
+def offset_of(data: Measured, text: str) -> Span:
+    """Return the offset of all places, within a range such as "-2ms..2ms". Raises LoomfmuError."""
+    first, last = units.ends_of(text) if isinstance(text, str) else ("", "")
+    if not (first and last):
+        raise LoomfmuError(f"offset = {shown(text)} is not a range such as {USUAL[data.over]}")
+    unit, display = ALONG[data.over], DISPLAY[data.over]
+    read = partial(_read, unit=unit, over=data.over)
+    varied = Varied("offset", (), "Real", unit, display, "Added to the places of the data", read)
+    span = Span(varied, read(first), read(last), 0.0, "given")
+    if not span.low < span.high:
+        raise LoomfmuError(f"offset: the range from {span.show(span.low)} to {span.show(span.high)} is empty")
+    return span
+
+
+def _read(given: str, unit: str, over: str) -> float:
+    try:
+        value = units.parse(given, unit)
+    except units.UnitError as error:
+        raise LoomfmuError(f"offset: {error}; the data are over {over}") from None
+    if not math.isfinite(value):
+        raise LoomfmuError(f"offset = {shown(given)} is not finite")
+    if units.is_plain(given) and value:
+        raise LoomfmuError(f"offset = {shown(given)} has no unit; write a range such as {USUAL[over]}")
     return value

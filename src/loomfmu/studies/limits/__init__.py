@@ -1,4 +1,4 @@
-"""Limits: `limits` of one variable, `boundary` for values of a second; `search` finds roots and extremes.
+"""Limits: `limits` of one variable, and for values of a second; `search` finds roots and extremes.
 
-`results` is what was found; `limit_tables` and `picture` show it.
+`results` is what was found; `limit_tables` shows it.
 """

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from .polished import Tangent, tangent
+from .polished import Tangent, program, tangent
 from .runs import Design, Floats, Runs, about
 from .search import ALIKE
 
@@ -106,14 +106,11 @@ def _gain(here: Tangent, room: Floats, wider: Floats) -> float:
 
 def _solved(here: Tangent, room: Floats, low: Floats, high: Floats) -> Any:
     """The linear program for the best step from here; None where it has no solution."""
-    from scipy.optimize import linprog
-
     goals, claims = len(here.heights), len(here.room)
     matrix = np.block([[here.slopes, -np.ones((goals, 1))], [-here.changes, np.zeros((claims, 1))]])
     costs, limits = np.array([*np.zeros(len(here.x)), 1.0]), np.concatenate([np.zeros(goals), room])
     bounds = [*zip(low.tolist(), high.tolist(), strict=True), (None, None)]
-    found = linprog(costs, A_ub=matrix, b_ub=limits, bounds=bounds, method="highs")
-    return found if found.status == 0 else None
+    return program(costs, matrix, limits, bounds)
 
 
 def indifferent(runs: Runs, best: Design) -> dict[str, tuple[float, float]]:

@@ -114,18 +114,18 @@ def _step_to(
         (None, None),
         (0.0, None),
     ]
-    least = _solved(np.array([*np.zeros(size + 1), 1.0]), matrix, limits, bounds)
+    least = program(np.array([*np.zeros(size + 1), 1.0]), matrix, limits, bounds)
     if least is None:
         return centre.x, centre.height(penalty), penalty
     while True:
-        found = _solved(np.array([*np.zeros(size), 1.0, penalty]), matrix, limits, bounds)
+        found = program(np.array([*np.zeros(size), 1.0, penalty]), matrix, limits, bounds)
         if found is None:
             return centre.x, centre.height(penalty), penalty
-        if found[-1] <= least[-1] + 1e-12 or penalty >= STEEPEST:
+        if found.x[-1] <= least.x[-1] + 1e-12 or penalty >= STEEPEST:
             break
         penalty *= STEEPER
-    x = np.clip(centre.x + found[:size], 0.0, 1.0)
-    return x, float(found[-2] + penalty * found[-1]), penalty
+    x = np.clip(centre.x + found.x[:size], 0.0, 1.0)
+    return x, float(found.x[-2] + penalty * found.x[-1]), penalty
 
 
 def _model(centre: Tangent, near: Sequence[Tangent]) -> tuple[Floats, Floats]:
@@ -149,8 +149,9 @@ def _model(centre: Tangent, near: Sequence[Tangent]) -> tuple[Floats, Floats]:
     return np.array(rows), np.array(limits)
 
 
-def _solved(costs: Floats, matrix: Floats, limits: Floats, bounds: Sequence[Any]) -> Floats | None:
+def program(costs: Floats, matrix: Floats, limits: Floats, bounds: Sequence[Any]) -> Any:
+    """Return scipy's result for the least costs of a linear program; None where it has no solution."""
     from scipy.optimize import linprog
 
     found = linprog(costs, A_ub=matrix, b_ub=limits, bounds=bounds, method="highs")
-    return np.asarray(found.x) if found.status == 0 else None
+    return found if found.status == 0 else None

@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 
 from ...errors import LoomfmuError
 from ...files import cannot_write
-from ...sweeps.pools import Pool
-from ...sweeps.schedule import run_batches
+from ...sweeps.schedule import Pool, run_batches
 from ...sweeps.varied import Value
 from ...sweeps.worker import Batch, ClaimResult, Job
 from .study import Study

@@ -1,4 +1,4 @@
-"""A study file, read and checked against its scene: what is wanted, and what may vary."""
+"""A study file, read and checked against its scene: what is wanted, what may vary, which claims must hold."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,6 +7,7 @@ from math import prod
 from pathlib import Path
 from typing import Any
 
+from ... import units
 from ...cosim.claims.measures import measure, signal_in
 from ...cosim.planning.requested import output_port
 from ...cosim.scenes.scene import Scene
@@ -14,8 +15,7 @@ from ...cosim.scenes.settings import read_table
 from ...errors import LoomfmuError, listed, shown, suggestion
 from ...sweeps.axes import Range, flattened, grid_axis, range_of, whole
 from ...sweeps.header import HEAD, Header, check_by_scene, read, variables
-from ...sweeps.varied import Value, Varied, shown_unit
-from .constraints import names_of, required_of, safety_of
+from ...sweeps.varied import Keyed, Value, shown_unit
 
 WAYS = {"minimise": 1.0, "maximise": -1.0}  # what a goal is multiplied by to be made small
 KEYS = (*HEAD, *WAYS, "safety", "except", "ranges", "choices", "search")
@@ -25,17 +25,11 @@ MOST_GOALS = 3
 
 
 @dataclass(frozen=True)
-class Variable:
+class Variable(Keyed):
     """A variable of a study: in a `range` of real numbers, or among `options`."""
 
-    varied: Varied
     range: Range | None
     options: Sequence[Value] = ()
-
-    @property
-    def key(self) -> str:
-        """The key in the file."""
-        return self.varied.key
 
     @property
     def last(self) -> float:
@@ -239,3 +233,62 @@ def _goal(scene: Scene, way: str, name: str, sign: float, known: Sequence[Variab
         near = suggestion(name, [*keys, *(claim for claim in claims if claim != "None")])
         raise LoomfmuError(f"{error}; or a variable of [ranges] or a claim{near}") from None
     return Goal(name, sign, "signal", signals, port.unit, port.display)
+
+
+def names_of(scene: Scene) -> list[str]:
+    """Return the study's names of the claims of its scene."""
+    return [str(claim.get("name") or f"claim_{number + 1}") for number, claim in enumerate(scene.claims)]
+
+
+def _check_claim(name: Any, names: Sequence[str], where: str) -> None:
+    if name not in names:
+        known = suggestion(str(name), names)
+        raise LoomfmuError(f"{where}: the scene has no claim {shown(name)}{known}")
+
+
+def required_of(scene: Scene, given: Any) -> tuple[bool, ...]:
+    """Return which claims must hold: all but those that are named."""
+    if not isinstance(given, list):
+        raise LoomfmuError(f"except = {shown(given)} must be a list of claims by their names")
+    names = names_of(scene)
+    for name in given:
+        _check_claim(name, names, "except")
+    return tuple(name not in given for name in names)
+
+
+def safety_of(
+    scene: Scene, given: Any, required: Sequence[bool]
+) -> tuple[tuple[float, ...], tuple[str, ...]]:
+    """Return the distances of claims from their bounds: shares of bounds, and amounts in claims' units."""
+    names = names_of(scene)
+    if not scene.claims and given:
+        raise LoomfmuError(f"safety = {shown(given)}, but the scene has no claims")
+    free = [name for name, needed in zip(names, required, strict=True) if not needed]
+    table = given if isinstance(given, dict) else {name: given for name in names if name not in free}
+    for name in table:
+        _check_claim(name, names, "safety")
+        if name in free:
+            raise LoomfmuError(
+                f"safety.{name!r}: except says that this claim may fail; leave out one of them"
+            )
+    shares, amounts = [], []
+    for name in names:
+        share, amount = _distance(table.get(name, 0.0), name if isinstance(given, dict) else "")
+        shares.append(share)
+        amounts.append(amount)
+    return tuple(shares), tuple(amounts)
+
+
+def _distance(given: Any, name: str) -> tuple[float, str]:
+    where = f"safety.{name!r}" if name else "safety"
+    try:
+        share, amount = units.parse(given, "1"), ""
+    except units.UnitError as error:
+        if not isinstance(given, str) or not name:
+            raise LoomfmuError(f"{where}: {error}; give a share of the bound, such as '2 %'") from None
+        share, amount = 0.0, given
+    if units.is_plain(given) and share > 1.0:
+        raise LoomfmuError(f'{where} = {share:g} is {share:.0%} of the bound; write "{share:g} %"')
+    if not 0.0 <= share < 1000.0:
+        raise LoomfmuError(f"{where} = {share:g} is outside [0, 1000]")
+    return share, amount

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 from ...cosim.claims.claims import called
-from ...cosim.prepared import Prepared
 from ...cosim.reading import protected
 from ...cosim.run import prepare
 from ...cosim.scenes.headings import heading
@@ -214,49 +213,43 @@ def _points(spans: Sequence[Span]) -> list[Shares]:
     return [own, *corners, *scattered]
 
 
-class _Box:
+class _Box(Evaluations):
     """A prepared scene as a function of the places in its tolerances."""
-
-    def __init__(self, loom: Prepared, spans: Sequence[Span]):
-        self._loom, self._spans = loom, tuple(spans)
-        self._runs = Evaluations(loom, spans)
 
     def searched(self, points: Sequence[Shares], advance: Callable[[int], None]) -> Tolerances:
         """The worst case of each claim."""
         for point in points:
-            self._at(point)
+            self.at(*self._values(point))
             advance(1)
         found = []
         for number in range(len(self._loom.scene.claims)):
             found.append(self._worst_case(number, points))
             advance(1)
         title = heading(self._loom.scene, [each.key for each in self._spans])
-        warnings = warnings_of(self._spans, self._runs.warnings)
-        return Tolerances(title, self._spans, tuple(found), len(self._runs), warnings)
+        return Tolerances(
+            title, self._spans, tuple(found), len(self), warnings_of(self._spans, self.warnings)
+        )
 
     def _worst_case(self, number: int, points: Sequence[Shares]) -> WorstCase:
         def distance(point: Shares) -> float:
-            found = self._at(point)[number].distance
+            found = self.at(*self._values(point))[number].distance
             return -math.inf if math.isnan(found) else found  # it fails without one
 
         ranked = sorted(points, key=distance)
         least, most = distance(ranked[0]), distance(ranked[-1])
-        alike = least == most or most - least <= SAME * abs(self._at(points[0])[number].bound)
+        bound = self.at(*self._values(points[0]))[number].bound
+        alike = least == most or most - least <= SAME * abs(bound)
         worst = points[0] if alike else _descended(distance, ranked[0])
-        own, verdict = (self._runs.estimated(*self._values(place))[number] for place in (points[0], worst))
+        own, verdict = (self.estimated(*self._values(place))[number] for place in (points[0], worst))
         costs = []
         for place, span in enumerate(self._spans):
             restored = (*worst[:place], points[0][place], *worst[place + 1 :])
             if (given_back := distance(restored) - distance(worst)) > SAME * abs(verdict.bound):
                 costs.append(Cost(span.key, given_back))
         name = called(self._loom.scene.claims[number], own)
-        values = {span.key: span.at(share) for span, share in zip(self._spans, worst, strict=True)}
+        values = dict(zip((span.key for span in self._spans), self._values(worst), strict=True))
         costs.sort(key=lambda each: -each.distance)
         return WorstCase(name, own, verdict, values, tuple(costs), not alike)
-
-    def _at(self, point: Shares) -> tuple[Verdict, ...]:
-        """The verdicts at a place. Raises LoomfmuError that names it."""
-        return self._runs.at(*self._values(point))
 
     def _values(self, point: Shares) -> list[float]:
         return [span.at(share) for span, share in zip(self._spans, point, strict=True)]

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from loomfmu.studies.fitting.independence import residuals_of, shift_of
+from loomfmu.studies.fitting.intervals import residuals_of, shift_of
 
 
 def left(noise: np.ndarray, slopes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
