@@ -100,6 +100,15 @@ WHOLE = FMI3.replace(
     )
     + '<Boolean name="at_speed"',
 )
+SQUARE = '<Dimension start="2"/><Dimension start="2"/></Float64>'
+ARRAYS = FMI3.replace(
+    '<String name="label"',
+    '<Float64 name="u" valueReference="80" causality="input" start="0.5">'
+    f'{SQUARE}<Float64 name="y" valueReference="81" causality="output">{SQUARE}'
+    '<Float32 name="twice" valueReference="82" causality="local"><Dimension start="2"/></Float32>'
+    '<Float64 name="huge" valueReference="83" causality="output"><Dimension start="1001"/></Float64>'
+    '<String name="label"',
+)
 BLANKS = FMI3.replace('"both_ways"', '"both ways"').replace('"no_way_back"', '"no way-back"')
 
 

@@ -23,6 +23,7 @@ typedef struct {
     fmi3UInt16 UInt16;
     fmi3UInt32 UInt32;
     fmi3UInt64 UInt64;
+    double table[2], u[4]; /* arrays: parameters and inputs */
 } Instance;
 
 const char *fmi3GetVersion(void) { return "3.0"; }
@@ -42,6 +43,7 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3
     }
     instance = calloc(1, sizeof(Instance));
     motor_defaults(&instance->motor);
+    instance->table[0] = 1.0, instance->table[1] = 2.0;
     instance->log = log;
     instance->environment = environment;
     return instance;
@@ -78,14 +80,30 @@ static double *real(Motor *m, fmi3ValueReference r)
     return all[r];
 }
 
+/* 50 the array table, 80 the input u, 81 the output y = table[1] * u + table[2] * w, the latter two 2 by 2 */
+static fmi3Status whole(fmi3ValueReference r, size_t n, size_t k)
+{
+    return n == 1 && k == (r == 50 ? 2u : 4u) ? fmi3OK : fmi3Error;
+}
+
 fmi3Status fmi3GetFloat64(fmi3Instance c, const fmi3ValueReference r[], size_t n, fmi3Float64 v[], size_t k)
 {
+    Instance *i = c;
+    if (r[0] == 81) {
+        for (size_t j = 0; j < 4; j++) v[j] = i->table[0] * i->u[j] + i->table[1] * i->motor.w;
+        return whole(r[0], n, k);
+    }
     for (size_t j = 0; j < n && j < k; j++) v[j] = *real(&((Instance *)c)->motor, r[j]);
     return fmi3OK;
 }
 
 fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference r[], size_t n, const fmi3Float64 v[], size_t k)
 {
+    Instance *i = c;
+    if (r[0] == 50 || r[0] == 80) {
+        memcpy(r[0] == 50 ? i->table : i->u, v, k * sizeof *v);
+        return whole(r[0], n, k);
+    }
     for (size_t j = 0; j < n && j < k; j++) *real(&((Instance *)c)->motor, r[j]) = v[j];
     return fmi3OK;
 }
@@ -137,7 +155,7 @@ HELD(UInt64)
 fmi3Status fmi3GetFloat32(fmi3Instance c, const fmi3ValueReference r[], size_t n, fmi3Float32 v[], size_t k)
 {
     (void)r;
-    for (size_t j = 0; j < n && j < k; j++) v[j] = (fmi3Float32)((Instance *)c)->motor.w;
+    for (size_t j = 0; j < k; j++) v[j] = (fmi3Float32)(((Instance *)c)->motor.w * (j + 1.0));
     return fmi3OK;
 }
 

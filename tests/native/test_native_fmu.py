@@ -124,6 +124,7 @@ def test_all_it_holds_has_a_licence(built):
         zipfile.ZipFile(built["MainShaft"].path).read("sources/buildDescription.xml")
     )
     assert [file.get("name") for file in description.iter("SourceFile")] == ["fmi2.c"]
+    assert all(each.get("compiler") for each in description.iter("SourceFileSet"))  # beside its options
 
 
 @pytest.mark.slow

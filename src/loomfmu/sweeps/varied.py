@@ -8,7 +8,7 @@ from typing import Any
 from .. import units
 from ..cosim.importing.fmus import Port
 from ..cosim.scenes.instance_tables import overridden, unit_of
-from ..cosim.scenes.instances import Instance
+from ..cosim.scenes.instances import TOLERANCE, Instance
 from ..cosim.scenes.scene import Scene, check_free
 from ..cosim.scenes.settings import COARSE, TIMES, truth
 from ..errors import LoomfmuError, listed
@@ -135,6 +135,11 @@ def _variable(scene: Scene, key: str, instance: str, variable: str) -> Varied:
         return Varied(
             key, (key,), "Boolean", "1", "1", about, lambda given: truth(given, key), needs_scene=True
         )
+    if name not in fmu.ports and variable == TOLERANCE and not fmu.ours:
+        about, number = "Relative tolerance of its solver", lambda given: units.parse(given, "1")
+        return Varied(key, (key,), "Real", "1", "1", about, number, needs_scene=True)
+    if array := fmu.elements(variable):
+        raise LoomfmuError(f"{key} is an array; vary one of its elements, such as {instance}.{array[0].name}")
     check_free(scene, [(instance, variable)])
 
     def read(given: Any) -> Value:

@@ -1,5 +1,6 @@
 """Third-party FMUs, FMI 2.0 and 3.0, wired to ours: a motor in C with an exact solution."""
 
+import re
 from collections.abc import Iterator
 from contextlib import nullcontext, suppress
 from dataclasses import replace
@@ -7,17 +8,21 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from foreign_motors import description2, library, motor2, packed
+from foreign_motors import ARRAYS, description2, library, motor2, motor3, packed
+from hypothesis import given
+from hypothesis import strategies as st
 from motor_scenes import LENGTH, MOTOR, SHAFT3, WEFT, exact, ran, refused
 
 from loomfmu import LoomfmuError, Trace, evaluate, run
 from loomfmu.cli import main
 from loomfmu.components import WeftInsertion
 from loomfmu.cosim.importing import fmus, pool
+from loomfmu.cosim.importing.conversions import Definition, Stated, stated
 from loomfmu.cosim.importing.ports import Port
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.graph import drive
 from loomfmu.machines import parameters
+from loomfmu.sweeps.varied import varied
 
 # ---- they drive our mechanisms
 
@@ -55,6 +60,23 @@ def test_the_tolerance_that_an_fmu_states_is_passed_on_to_it(
     expected = pytest.raises(LoomfmuError, match=said) if said else nullcontext()
     with expected:
         ran(place, MOTOR.replace("Motor.fmu", "Strict.fmu") + f"isolated = {isolated}\n{WEFT}", tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ("0.05", ""),
+        ("0.5", "motor: .*fmi2SetupExperiment"),
+        ("0", "motor.tolerance = 0 must be a finite number above 0"),
+        ('"fine"', "motor.tolerance: 'fine' is not a quantity"),
+    ],
+)
+def test_a_scene_sets_the_tolerance_of_an_fmu(place: Path, tmp_path: Path, given: str, said: str) -> None:
+    stated = '<DefaultExperiment tolerance="0.5"/><ModelVariables>'
+    text = description2().replace("<ModelVariables>", stated)
+    packed(place / "Strict.fmu", text, library("fmi2.c"), "Motor")  # it refuses tolerances above 0.1
+    with pytest.raises(LoomfmuError, match=said) if said else nullcontext():
+        ran(place, MOTOR.replace("Motor.fmu", "Strict.fmu") + f"tolerance = {given}\n{WEFT}", tmp_path)
 
 
 def test_a_boolean_input_of_fmi_3_is_driven(place: Path, tmp_path: Path) -> None:
@@ -173,7 +195,82 @@ def test_run_says_how_long(place: Path, tmp_path: Path, capsys: pytest.CaptureFi
     assert Trace(trace).attributes["step"] == 0.002
 
 
-# ---- units on wires: nothing is converted and nothing is guessed
+# ---- arrays of FMI 3, and locals
+
+TABLE = LENGTH + 'record = ["*", "one.twice_*"]\n[one]\nfmu = "Motor3.fmu"\ntable = [3, 2]\n'
+
+
+@pytest.mark.parametrize("isolated", [True, False])
+def test_arrays_are_set_wired_and_recorded(tmp_path: Path, isolated: bool) -> None:
+    motor3(tmp_path, description=ARRAYS)
+    text = TABLE + 'u = [[1, 2], [3, 4]]\n[two]\nfmu = "Motor3.fmu"\n"u[2,1]" = 7\n'
+    text += '[three]\nfmu = "Motor3.fmu"\n[wires]\n"three.u" = "one.y"\n'
+    text += '"two.u[1,2]" = "one.y[2,1]"\n"two.u[2,2]" = "one.velocity"\n'
+    trace = ran(tmp_path, text, tmp_path, isolated=isolated).trace
+    speed = trace["one.velocity"]
+    one, two, three = (
+        [trace[f"{name}.y_{row}_{column}"] for row in (1, 2) for column in (1, 2)]
+        for name in ("one", "two", "three")
+    )
+    np.testing.assert_array_equal(one, [3.0 * u + 2.0 * speed for u in (1.0, 2.0, 3.0, 4.0)])
+    driving = [0.5, one[2], 7.0, speed]  # where nothing is said, the start value for all elements
+    np.testing.assert_array_equal(two, [1.0 * u + 2.0 * speed for u in driving])
+    np.testing.assert_array_equal(three, [1.0 * u + 2.0 * speed for u in one])
+    np.testing.assert_array_equal(trace["one.twice_2"], np.float32(2.0 * speed))
+    assert "two.twice_2" not in trace and "one.huge_1" not in trace
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("u = [1, 2, 3]\n", "one.u is an array up to [2,2]: 4 values, not 3"),
+        ("u = [1, 2, 3, true]\n", "one.u_2_2: True is not a quantity such as"),
+        ('[wires]\n"one.u" = "one.table"\n', "wire one.table -> one.u: 2 values for 4"),
+        ('[wires]\n"one.u" = "one.velocity"\n', "wire one.velocity -> one.u: 1 values for 4"),
+    ],
+)
+def test_arrays_of_another_size_are_refused(tmp_path: Path, text: str, said: str) -> None:
+    motor3(tmp_path, description=ARRAYS)
+    assert said in refused(tmp_path, TABLE + text)
+
+
+def test_a_sweep_varies_tolerances_and_elements_of_arrays(tmp_path: Path) -> None:
+    motor3(tmp_path, description=ARRAYS)
+    scene = scenes.parse(TABLE, directory=tmp_path)
+    assert varied(scene, "one.u_1_2").read("3") == 3.0
+    assert varied(scene, "one.tolerance").needs_scene
+    with pytest.raises(LoomfmuError, match=r"^one\.u is an array; vary one of its .*, such as one\.u_1_1"):
+        varied(scene, "one.u")
+
+
+def test_arrays_are_not_more_than_a_trace_can_hold(tmp_path: Path) -> None:
+    large = "".join(
+        f'<Float64 name="a{n}" valueReference="{100 + n}"><Dimension start="1000"/></Float64>'
+        for n in range(101)
+    )
+    motor3(tmp_path, description=ARRAYS.replace("<String ", large + "<String "))
+    assert refused(tmp_path, TABLE).endswith("cannot be read (its arrays have more than 100000 elements)")
+
+
+def test_start_values_of_an_array_are_one_or_one_for_each_element(tmp_path: Path) -> None:
+    motor3(tmp_path, description=ARRAYS.replace('start="0.5"', 'start="1 2 3"'))
+    assert "'u' has 4 elements and 3 start values" in refused(tmp_path, TABLE)
+
+
+def test_locals_are_recorded_when_they_are_asked_for(place: Path, tmp_path: Path) -> None:
+    outputs = r'(name="(?:flange|time|steps|at_speed|winding)[^>]*causality=)"output"'
+    inner = re.sub(outputs, r'\1"local"', description2())
+    packed(tmp_path / "Inner.fmu", inner, library("fmi2.c"), "Motor")
+    text = MOTOR.replace("Motor", "Inner")
+    trace = ran(tmp_path, f'record = ["motor.*"]\n{text}', tmp_path).trace
+    outer = ran(place, MOTOR, tmp_path / "outer").trace
+    assert set(trace) == set(outer)
+    np.testing.assert_array_equal(trace["motor.flange_w"], outer["motor.flange_w"])
+    assert list(ran(tmp_path, f'record = ["motor.steps"]\n{text}', tmp_path).trace) == ["motor.steps"]
+    assert not list(ran(tmp_path, text, tmp_path).trace)
+
+
+# ---- units on wires: converted where both are known, never guessed
 
 
 @pytest.fixture
@@ -182,31 +279,89 @@ def unitless(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_degrees_are_not_radians(tmp_path: Path) -> None:
+def test_degrees_become_radians_on_a_wire(tmp_path: Path) -> None:
     motor2(tmp_path, phi="deg")
-    assert refused(tmp_path, MOTOR + WEFT) == (
-        "wire motor.flange.phi -> weft.shaft_angle: motor.flange.phi is in deg, weft.shaft_angle in rad:"
-        " 1 deg is 0.0174532925 rad, and a wire converts nothing"
+    trace = ran(tmp_path, MOTOR + WEFT, tmp_path).trace
+    apart = ran(tmp_path, MOTOR + WEFT, tmp_path / "apart", isolated=True).trace
+    for signal in trace:  # in C and in Python
+        np.testing.assert_array_equal(trace[signal], apart[signal])
+    weft = WeftInsertion(**parameters("WeftInsertion", machine="WL680-3600"))
+    weft.follow_shaft = weft.inputs_at_step_end = True
+    weft.shaft_angle = np.radians(trace["motor.flange_phi"][-1])
+    assert weft.initialize(0.0) == 0 and weft.travel == pytest.approx(trace["weft.travel"][-1], rel=1e-13)
+
+
+KELVIN, CUBIC = Definition((0, 0, 0, 0, 1, 0, 0, 0)), Definition((0, 3, 0, 0, 0, 0, 0, 0))
+
+
+@pytest.mark.parametrize(
+    ("unit", "definition", "text", "value"),
+    [
+        ("K", KELVIN, "25 degC", 298.15),
+        ("K", KELVIN, "25 K", 25.0),
+        ("degC", None, "25 degC", 25.0),
+        ("degF", replace(KELVIN, factor=5.0 / 9.0, offset=459.67 * 5.0 / 9.0), "25 degC", 77.0),
+        ("[m3]", CUBIC, "2 m3", 2.0),
+        ("m", None, "25 degC", "x: 25 degC does not fit m"),
+    ],
+)
+def test_values_in_units_of_others(
+    unit: str, definition: Definition | None, text: str, value: float | str
+) -> None:
+    known = stated(unit, definition)
+    assert known
+    port = Port("x", "Real", 0, "input", known.name, "1", None, None, 0.0, "", definition=known.definition)
+    if isinstance(value, str):
+        with pytest.raises(LoomfmuError, match=value):
+            port.value(text, "x")
+    else:
+        assert port.value(text, "x") == pytest.approx(value, rel=1e-14)
+
+
+UNIT = st.builds(
+    lambda factor, offset: Stated(f"{factor} {offset}", replace(KELVIN, factor=factor, offset=offset)),
+    st.floats(0.5, 2.0),
+    st.floats(-300.0, 300.0),
+)
+
+
+@given(UNIT, UNIT, UNIT, st.floats(-300.0, 300.0))
+def test_conversions_go_there_and_back_and_one_after_the_other(
+    one: Stated, two: Stated, three: Stated, value: float
+) -> None:
+    there, near = one.conversion(two), 1e-5  # factors that agree to 1e-9 are one
+    assert there.then(two.conversion(one))(value) == pytest.approx(value, abs=near)
+    assert there.then(two.conversion(three))(value) == pytest.approx(one.conversion(three)(value), abs=near)
+
+
+def test_one_warning_names_all_wires_with_a_unit_at_one_end_alone(unitless: Path, tmp_path: Path) -> None:
+    result = ran(unitless, MOTOR + WEFT, tmp_path)
+    (said,) = [each for each in result.warnings if "unit" in each]
+    assert said == (
+        "values pass unchanged on wires with a unit at one end only:"
+        " motor.flange_phi -> weft.shaft_angle in rad,"
+        " motor.flange_w -> weft.shaft_velocity in rad/s and"
+        " motor.flange_a -> weft.shaft_acceleration in rad/s2;"
+        ' state the others in [units], as "motor.flange_a" = "...", or by --set motor.units.flange_a=...'
+    )
+    np.testing.assert_allclose(
+        result.trace["motor.flange_phi"], exact(result.trace.time)[0], rtol=0, atol=1e-12
     )
 
 
-def test_a_unit_that_is_not_there_is_asked_for(unitless: Path, tmp_path: Path) -> None:
-    assert refused(unitless, MOTOR + WEFT) == (
-        "wire motor.flange.phi -> weft.shaft_angle: motor.flange.phi has no unit, weft.shaft_angle is in rad;"
-        ' say what it is: [motor] units = {flange_phi = "..."} in a scene,'
-        " or --set motor.units.flange_phi=..."
-    )
-    by_hand = {"motor.units.flange.phi": "rad", "motor.units.flange_w": "rad/s"}
-    stated = MOTOR + 'units = {flange_a = "rad/s2"}\n' + WEFT
+def test_units_are_stated_with_the_instance_in_one_table_or_by_hand(unitless: Path, tmp_path: Path) -> None:
+    by_hand = {"motor.units.flange.phi": "rad"}
+    stated = MOTOR + 'units = {flange_a = "rad/s2"}\n[units]\n"motor.flange_w" = "rad/s"\n' + WEFT
     scene = scenes.parse(stated, "x", by_hand, unitless)
     ports = scene.instances["motor"].fmu.ports
     assert [ports[f"flange_{x}"].unit for x in ("phi", "w", "a")] == ["rad", "rad/s", "rad/s2"]
+    assert not scene.notes
     with pytest.raises(LoomfmuError, match=r"^motor\.units: Motor has no variable 'x'"):
         scenes.parse(MOTOR, "x", {"motor.units.x": "rad"}, unitless)
-    units = 'units = {"flange.phi" = "rad", flange_w = "rad/s", flange_a = "rad/s2"}\n'
-    trace = ran(unitless, MOTOR + units + WEFT, tmp_path).trace
-    assert trace.unit("motor.flange_w") == "rad/s"
-    np.testing.assert_allclose(trace["motor.flange_phi"], exact(trace.time)[0], rtol=0, atol=1e-12)
+    assert refused(unitless, MOTOR + '[units]\nmotr.x = "m"\n') == (
+        "units.motr.x: there is no instance 'motr'; did you mean 'motor'?"
+    )
+    assert ran(unitless, stated, tmp_path).trace.unit("motor.flange_w") == "rad/s"
 
 
 def test_units_as_they_are_written_in_the_wild(tmp_path: Path) -> None:

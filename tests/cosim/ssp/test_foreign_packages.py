@@ -235,35 +235,79 @@ def test_units_that_connectors_state_count_where_the_fmu_states_none(tmp_path: P
             ("w_free", "parameter", "rad/s"),
         )
     )
-    bare = package(tmp_path, units=False)
-    with pytest.raises(LoomfmuError, match=r"w_free = 572\.957795130823 rpm, but the variable has no unit"):
-        run(bare, output=tmp_path / "x.h5")
-    follow_the_hints(bare, tmp_path)
+    bare = run(package(tmp_path, units=False), output=tmp_path / "x.h5")
+    assert bare.warnings == (
+        "values are taken as they are where the variable has no unit: drive_motor.w_free in rev/min;"
+        " state it by --set drive_motor.units.w_free=...",
+        "values pass unchanged on wires with a unit at one end only:"
+        " drive_motor.flange_phi -> left_head.shaft_angle in rad and"
+        " drive_motor.flange_w -> left_head.shaft_velocity in rad/s;"
+        ' state the others in [units], as "drive_motor.flange_w" = "...",'
+        " or by --set drive_motor.units.flange_w=...",
+    )
+    assert bare.scene.instances["drive_motor"].values["w_free"] == 572.957795130823
     connectors = f"<ssd:Connectors>{stated}</ssd:Connectors>"
     result = run(package(tmp_path, units=False, connectors=connectors), output=tmp_path / "x.h5")
     assert result.trace.unit("drive_motor.flange_w") == "rad/s"
     assert result.scene.instances["drive_motor"].values["w_free"] == pytest.approx(60.0, rel=1e-12)
 
 
-def follow_the_hints(path: Path, tmp_path: Path) -> None:
-    """Whatever unit is asked for can be given in the way that is said, one after the other."""
+def test_units_can_be_stated_by_hand(tmp_path: Path) -> None:
     units = {"w_free": "rad/s", "flange_phi": "rad", "flange_w": "rad/s"}
-    asked = []
-    overrides: dict[str, str] = {}
-    while True:
-        try:
-            result = run(path, set=overrides, output=tmp_path / "x.h5")
-            break
-        except LoomfmuError as error:
-            key = str(error).rpartition("--set ")[2].removesuffix("=...")
-            asked.append(key)
-            assert asked.count(key) == 1
-            overrides[key] = units[key.rpartition(".")[2]]
-    assert asked == [f"drive_motor.units.{name}" for name in units]
-    assert result.trace.unit("drive_motor.flange_w") == "rad/s"
+    overrides = {f"drive_motor.units.{name}": unit for name, unit in units.items()}
+    path = package(tmp_path, units=False)
+    result = run(path, set=overrides, output=tmp_path / "x.h5")
+    assert not result.warnings and result.trace.unit("drive_motor.flange_w") == "rad/s"
     assert result.scene.instances["drive_motor"].values["w_free"] == pytest.approx(60.0, rel=1e-12)
     with pytest.raises(LoomfmuError, match=r"drive_motor\.units: .* variable 'x'"):
         run(path, set={"drive_motor.units.x": "m"}, output=tmp_path / "x.h5")
+
+
+FREE = 'startConnector="free" endElement="motor" endConnector="load.tau"'
+TWICE = '<ssc:LinearTransformation factor="2" offset="1"/>'
+
+
+@pytest.mark.parametrize(
+    ("given", "attributes", "torque"),
+    [
+        ('value="7"', "", 15.0),
+        ('value="0.7" unit="daN.m"', "", 15.0),  # the unit first, then the transformation
+        ('value="0.7" unit="daN.m"', 'suppressUnitConversion="true"', 2.4),
+    ],
+)
+def test_a_connection_transforms_a_value_after_its_unit(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, given: str, attributes: str, torque: float
+) -> None:
+    made = f"<ssd:Connection {FREE} {attributes}>{TWICE}</ssd:Connection>"
+    monkeypatch.setitem(globals(), "DRIVE", DRIVE.replace(f"<ssd:Connection {FREE}/>", made))
+    monkeypatch.setitem(SETS, "outer", SETS["outer"] + parameter("load", "Real", given))
+    monkeypatch.setitem(globals(), "CENTIMETRE", CENTIMETRE.replace("</ssv:Units>", DECANEWTON))
+    values = ran(tmp_path).scene.instances["drive_motor"].values
+    assert values["load_tau"] == pytest.approx(torque, rel=1e-15)
+
+
+def test_wires_convert_and_transform_on_their_way_through_systems(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    degrees = '<ssd:Connector name="phi" kind="output"><ssc:Real unit="deg"/></ssd:Connector>'
+    plain = '<ssd:Connector name="phi" kind="output"/>'
+    with monkeypatch.context() as spelt:
+        spelt.setitem(globals(), "DRIVE", DRIVE.replace(plain, degrees))
+        result = ran(tmp_path, transformed=TWICE)  # 2 * degrees(angle) + 1
+    wire = next(each for each in result.scene.wires if each.sink == ("left_head", "shaft_angle"))
+    assert wire.conversion.factor == pytest.approx(2.0, rel=1e-15)
+    assert wire.conversion.offset == pytest.approx(np.radians(1.0), rel=1e-15)
+    radians = TWICE.replace('"1"', '"0.017453292519943295"')
+    plainly = run(package(tmp_path, transformed=radians), output=tmp_path / "plainly.h5").trace
+    travel = result.trace["left_head.travel"], plainly["left_head.travel"]
+    np.testing.assert_allclose(*travel, rtol=1e-12, atol=1e-12)
+
+
+def test_a_mapping_transforms_its_value(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    entry = '<ssm:MappingEntry source="set.inertia" target="drive.motor.J"'
+    spelt = STRUCTURE.replace(f"{entry}/>", f"{entry}>{TWICE}</ssm:MappingEntry>")
+    monkeypatch.setitem(globals(), "STRUCTURE", spelt)
+    assert ran(tmp_path).scene.instances["drive_motor"].values["J"] == 2.0
 
 
 def test_a_plain_number_is_one_for_a_variable_without_unit(tmp_path: Path) -> None:
@@ -297,21 +341,30 @@ MISTAKES = {
     "it starts at 1 s; runs start at 0 s": {"experiment": 'startTime="1" stopTime="2"'},
     "duration is given but not step": {"algorithm": ""},
     "there is no shaft whose speed sets the step: add duration": {"algorithm": "", "experiment": ""},
-    "connection drive.motor.flange.phi -> drive.phi transforms its value; transformations are": {
-        "transformed": '<ssc:LinearTransformation factor="2"/>'
+    "connection drive.motor.flange.phi -> drive.phi: IntegerMappingTransformation is not supported, only": {
+        "transformed": "<ssc:IntegerMappingTransformation/>"
     },
     "resources/none.fmu is not in the package": component('source="resources/none.fmu"'),
     "../x.fmu is not in the package": component('source="../x.fmu"'),
     "http://host/x.fmu is not in the package": component('source="http://host/x.fmu"'),
     "Component has no source": component(""),
-    "bus is a SignalDictionaryReference: only FMUs and systems are supported": {
+    "bus: there is no signal dictionary 'd'": {
         "other": '<ssd:SignalDictionaryReference name="bus" dictionary="d"/>'
     },
-    "x: 'a.ssp' is not an FMU but 'application/x-ssp-package'": component(
-        'source="a.ssp" type="application/x-ssp-package"'
-    ),
-    "left_head.shaft_angle is connected to 2 outputs": connected("left head.travel", "left head.shaft_angle"),
-    "wire left_head.travel -> left_head.shaft_acceleration: left_head.travel is in m, left_head.": connected(
+    "x is a Note: only FMUs, systems and dictionaries are supported": {"other": '<ssd:Note name="x"/>'},
+    "x: 'a.mo' is not an FMU but 'text/x-modelica'": component('source="a.mo" type="text/x-modelica"'),
+    "a.ssp is not in the package": component('source="a.ssp" type="application/x-ssp-package"'),
+    "startIndices = '1' is not supported": {
+        "connection": '<ssd:Connection startElement="drive" startConnector="phi" startIndices="1"'
+        ' endElement="left head" endConnector="shaft_angle"/>'
+    },
+    "drive_motor.load.tau is connected to 2 outputs": {
+        "connection": "".join(
+            connected(f"left head.{output}", "drive.free")["connection"]
+            for output in ("shaft_torque", "shaft_work")
+        )
+    },
+    "connection from left head.travel is in m, left head.shaft_acceleration in rad/s2": connected(
         "left head.travel", "left head.shaft_acceleration"
     ),
     "connection to 'lft head.travel': there is no element 'lft head'; did you mean 'left head'?": connected(

@@ -4,6 +4,7 @@ import ctypes
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple, cast
 
+from .conversions import Linear
 from .ports import Port
 
 OK, WARNING, DISCARD, ERROR, FATAL = range(5)  # any other status is a failure, too
@@ -11,7 +12,7 @@ PENDING = 5  # of FMI 2.0: it goes on with a step in the background
 REFUSED = 1000  # not a status of FMI: a value was not handed over, since it would have become another one
 
 # what a compiled call does, as stepper.c numbers it
-VALUES, STEP, SET_3, GET_3, STEP_3 = range(5)
+VALUES, STEP, SET_3, GET_3, STEP_3, CONVERT = range(6)
 # the FMI 3.0 types that differ from the master's own, as stepper.c numbers them
 CONVERTED = (
     *("Float32", "Boolean", "Int8", "Int16", "Int64"),
@@ -75,6 +76,19 @@ class Call(NamedTuple):
     arguments: tuple[Any, ...]
     name: str
     compiled: Compiled | None = None
+
+
+def converting(conversion: Linear, source: int, values: "ctypes.Array[ctypes.c_double]", place: int) -> Call:
+    """Return what converts the number at an address and keeps it at a place among values."""
+    here = ctypes.c_double.from_address(source)
+
+    def convert() -> int:
+        values[place] = conversion(here.value)
+        return OK
+
+    target = ctypes.addressof(values) + place * ctypes.sizeof(ctypes.c_double)
+    compiled = Compiled(CONVERT, values=source, masters=target, low=conversion.factor, high=conversion.offset)
+    return Call(convert, (), "conversion", compiled)
 
 
 def address(function: Any) -> int | None:

@@ -1,16 +1,18 @@
 """The variables in a model description, FMI 2.0 and 3.0, of our FMUs and third-party ones."""
 
+import itertools
 import math
 import re
 from collections.abc import Collection, Iterable
+from copy import copy
 from dataclasses import replace
 from typing import Any
 
-from ... import units
 from ...declaring.variables import ALONE, SHARED, Beside, Component, Variable, beside, variables_of
 from ...errors import LONGEST_NAME, check_text, shown
 from ...fmi.description.references import FIRST_REFERENCE, FMI_TYPES
-from .ports import BASES, RANGES, Definition, Port, Value, own_definition, own_name, shown_in
+from .conversions import BASES, Definition, own_definition, stated
+from .ports import ELEMENT, RANGES, Port, Value, shown_in
 
 # FMI type -> how scenes and the master know it; what is not here, such as String, is left out
 KINDS = {
@@ -22,6 +24,8 @@ KINDS = {
     "Float32": "Real",
     **{f"{sign}Int{size}": "Integer" for sign in ("", "U") for size in (8, 16, 32, 64)},
 }
+MOST_ELEMENTS = 1000  # of an array that is exchanged
+MOST_IN_ALL = 100_000  # of all of these in an FMU
 
 
 def is_ours(description: Any) -> bool:
@@ -30,13 +34,18 @@ def is_ours(description: Any) -> bool:
 
 
 def ports_of(description: Any, component: type[Component] | None) -> dict[str, Port]:
-    """The scalar variables of the known types, by the names that scenes and traces use.
+    """The variables of the known types, elements of arrays each, by the names that scenes and traces use.
 
     `component` is the one that the FMU was made of, if it is known.
     """
     check_text(description.modelName or "", "modelName")
     _check(description.modelVariables)
-    known = [v for v in description.modelVariables if v.type in KINDS and not v.dimensions]
+    numbers = [v for v in description.modelVariables if v.type in KINDS]
+    arrays = {v.valueReference: v.name for v in numbers if v.dimensions}
+    sizes = (math.prod(v.shape) for v in numbers if v.dimensions)
+    if sum(size for size in sizes if size <= MOST_ELEMENTS) > MOST_IN_ALL:
+        raise ValueError(f"its arrays have more than {MOST_IN_ALL} elements")
+    known = [each for v in numbers for each in _scalars(v)]
     recorded = {v.name for v in known if v.causality == "output"}
     names = dict(zip((v.name for v in known), plain_names((v.name for v in known), recorded), strict=True))
     if component is not None:
@@ -45,6 +54,10 @@ def ports_of(description: Any, component: type[Component] | None) -> dict[str, P
     rates = _rates(description, names, component)
     definitions = {unit.name: _definition(unit.baseUnit) for unit in description.unitDefinitions}
     ports = [_port(variable, names[variable.name], rates, definitions) for variable in known]
+    ports = [
+        replace(port, array=arrays[port.reference % ELEMENT]) if port.reference >= ELEMENT else port
+        for port in ports
+    ]
     more = beside(component) if component else {}
     return {port.name: replace(port, beside=more.get(port.name, ALONE)) for port in ports}
 
@@ -88,9 +101,33 @@ def _declared(variable: Variable, reference: int, more: Beside) -> Port:
 
 
 def unsupported_outputs(description: Any) -> tuple[str, ...]:
-    """The outputs that are not scalars of the known types: arrays, texts, binary values, clocks."""
+    """The outputs that have no ports: texts, binary values, clocks, arrays that are too large or empty."""
     outputs = [v for v in description.modelVariables if v.causality == "output"]
-    return tuple(v.name for v in outputs if v.type not in KINDS or v.dimensions)
+    return tuple(v.name for v in outputs if v.type not in KINDS or not _scalars(v))
+
+
+def _scalars(variable: Any) -> list[Any]:
+    """Return a scalar itself, or the elements of an array in their order; none of one that is too large.
+
+    Raises ValueError where it has neither one start value nor one for each element.
+    """
+    if not variable.dimensions:
+        return [variable]
+    size = math.prod(variable.shape)
+    if size > MOST_ELEMENTS:
+        return []
+    starts = [None] if variable.start is None else variable.start.split()
+    if len(starts) not in (1, size):
+        raise ValueError(f"{shown(variable.name)} has {size} elements and {len(starts)} start values")
+    elements = []
+    for number, place in enumerate(itertools.product(*(range(1, each + 1) for each in variable.shape))):
+        element = copy(variable)
+        element.name = f"{variable.name}[{','.join(map(str, place))}]"
+        element.valueReference = variable.valueReference + ELEMENT * (number + 1)
+        element.start = starts[number % len(starts)]
+        element.derivative = None
+        elements.append(element)
+    return elements
 
 
 def tolerance_of(description: Any) -> float | None:
@@ -169,15 +206,18 @@ def _port(variable: Any, name: str, rates: dict[str, str], definitions: dict[str
         return own if own is not None or declared is None else getattr(declared, attribute)
 
     given = (said("unit") or "") if kind == "Real" else "1"
-    definition = definitions.get(given)
-    unit = own_name(given, definition) or given
+    unit = stated(given, definitions.get(given))
+    definition = unit.definition if unit else None
+    if definition is not None and said("relativeQuantity"):  # a difference of temperatures has no offset
+        definition = replace(definition, offset=0.0)
+    name_of_unit = unit.name if unit else "1"
     return Port(
         name=name,
         kind=kind,
         reference=variable.valueReference,
         causality=variable.causality,
-        unit=unit or "1",
-        display=shown_in(unit or "1", said("displayUnit") or ""),
+        unit=name_of_unit,
+        display=shown_in(name_of_unit, said("displayUnit") or ""),
         minimum=min(values) if values else _limit(kind, said("min")),
         maximum=max(values) if values else _limit(kind, said("max")),
         start=None if variable.start is None else _start(variable.type, variable.start),
@@ -188,8 +228,8 @@ def _port(variable: Any, name: str, rates: dict[str, str], definitions: dict[str
         own=variable.name,
         base_type=variable.type,
         discrete=variable.variability == "discrete",
-        has_unit=given != "",
-        definition=own_definition(unit) if unit in units.UNITS else definition,
+        has_unit=unit is not None,
+        definition=definition,
         nominal=_limit(kind, said("nominal")),
     )
 

@@ -1,12 +1,15 @@
 """An instance of an FMI 3.0 FMU, with the interface of `Slave`.
 
-Scalars are exchanged: floats, integers, booleans and enumerations. The instance is opened without event
+Floats, integers, booleans and enumerations are exchanged, and arrays of them: whole, by way of an array that
+has what is known of each element. The instance is opened without event
 mode and without early return: it steps as an FMI 2.0 one does.
 """
 
 import ctypes
 import math
+from collections import Counter
 from collections.abc import Sequence
+from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
 from fmpy.fmi3 import FMU3Slave
@@ -14,7 +17,7 @@ from fmpy.fmi3 import FMU3Slave
 from ...errors import LoomfmuError
 from . import calls
 from .calls import DISCARD, OK, REFUSED, WARNING, Call, Compiled
-from .ports import CARRIED, RANGES, Value
+from .ports import CARRIED, ELEMENT, RANGES, Value
 from .slave import Slave
 
 if TYPE_CHECKING:
@@ -63,6 +66,12 @@ class Fmi3Slave(Slave):
         self._flags = _Flags()
         self._types = {port.reference: port.base_type for port in fmu.ports.values()}
         self._names = {port.reference: port.name for port in fmu.ports.values()}
+        elements = [port for port in fmu.ports.values() if port.array]
+        sizes = Counter(port.reference % ELEMENT for port in elements)
+        self._arrays = {
+            port.reference % ELEMENT: (C_TYPES[port.base_type] * sizes[port.reference % ELEMENT])()
+            for port in elements
+        }
 
     def _open(self) -> Any:
         slave = self._loaded(FMU3Slave)
@@ -76,14 +85,20 @@ class Fmi3Slave(Slave):
         """Set the values and enter the initialization."""
         self.forget_messages()
         self.started = True
-        for name, value in values.items():
+        for port in self.fmu.ports.values():
+            if port.array:
+                array, element = self._element(port.reference)
+                self._arrays[array][element] = values.get(port.name, port.start or 0)
+        given = {self.fmu.ports[name].reference % ELEMENT: name for name in values}
+        for reference, name in given.items():  # an array once
             port = self.fmu.ports[name]
             function = FUNCTIONS.get(port.base_type, port.base_type)
-            self._do(getattr(self._slave, f"set{function}"), [port.reference], [value])
+            content = list(self._arrays[reference]) if port.array else [values[name]]
+            self._do(getattr(self._slave, f"set{function}"), [reference], content)
         defined, tolerance = self._tolerance()
         zero, stop = ctypes.c_double(), ctypes.c_double(stop_time)
-        given = (ctypes.c_bool(defined.value), tolerance, zero, ctypes.c_bool(True), stop)
-        self._do(self._call, "EnterInitializationMode", *given)
+        experiment = (ctypes.c_bool(defined.value), tolerance, zero, ctypes.c_bool(True), stop)
+        self._do(self._call, "EnterInitializationMode", *experiment)
 
     def _ended(self) -> float | None:
         return float(self._flags.reached) if self._flags.terminate else None
@@ -91,16 +106,52 @@ class Fmi3Slave(Slave):
     # ---- prepared calls
 
     def value_calls(self, action: str, kind: str, references: Sequence[int], place: int) -> list[Call]:
-        """Values between the FMU and the memory at a place, one FMI call for each run of one type."""
+        """Values between the FMU and the memory at a place, one FMI call for each array or run of a type."""
         made: list[Call] = []
-        start = 0
-        for end in range(1, len(references) + 1):
-            base_type = self._types[references[start]]
-            if end == len(references) or self._types[references[end]] != base_type:
-                size = ctypes.sizeof(_in_vector(base_type))
-                made.append(self._typed(action, base_type, references[start:end], place + start * size))
-                start = end
+        for (base_type, array), run in groupby(references, self._kind):
+            same = list(run)
+            made.append((self._whole if array else self._typed)(action, base_type, same, place))
+            place += ctypes.sizeof(_in_vector(base_type)) * len(same)
         return made
+
+    def _kind(self, reference: int) -> tuple[str, int | None]:
+        """The type of a variable, and the array that it is in."""
+        return self._types[reference], self._element(reference)[0] if reference >= ELEMENT else None
+
+    @staticmethod
+    def _element(reference: int) -> tuple[int, int]:
+        """The array that an element is in, and its place there."""
+        return reference % ELEMENT, reference // ELEMENT - 1
+
+    def _whole(self, action: str, base_type: str, references: Sequence[int], place: int) -> Call:
+        """One FMI call for an array, of which some elements are exchanged."""
+        array, own = self._element(references[0])[0], C_TYPES[base_type]
+        elements = [self._element(each)[1] for each in references]
+        name, content = f"fmi3{action}{FUNCTIONS.get(base_type, base_type)}", self._arrays[array]
+        between, limits = (own * len(elements))(), _limits(action, base_type)
+        values = (_in_vector(base_type) * len(elements)).from_address(place)
+        function, one = self._library[name], ctypes.c_size_t(1)
+
+        def exchanged(*arguments: Any) -> int:
+            if action == "Set":
+                if not self._fits(values, between, references, base_type, limits):
+                    return REFUSED
+                for element, value in zip(elements, between, strict=True):
+                    content[element] = value
+                return int(function(*arguments))
+            status = int(function(*arguments))
+            between[:] = [content[element] for element in elements]
+            sound = not OK <= status <= WARNING or self._fits(between, values, references, "", limits)
+            return status if sound else REFUSED
+
+        arguments = (
+            self._component,
+            (ctypes.c_uint32 * 1)(array),
+            one,
+            content,
+            ctypes.c_size_t(len(content)),
+        )
+        return Call(exchanged, arguments, name)
 
     def _typed(self, action: str, base_type: str, references: Sequence[int], place: int) -> Call:
         """One FMI call; where the types differ in width, by way of an array of the FMU's own type."""

@@ -1,6 +1,7 @@
 """FMUs: what is known of one, and its file, built and unpacked when it is first needed."""
 
 import hashlib
+import math
 import os
 import re
 import zipfile
@@ -12,10 +13,11 @@ from typing import Any
 
 import fmpy
 
+from ... import units
 from ...cache.entries import UNPACKED, folder
 from ...components import COMPONENTS
 from ...components.shaft_driven import FOLLOWED
-from ...declaring.variables import MOTION, Component
+from ...declaring.variables import MOTION, SHARED, Component
 from ...errors import LoomfmuError, listed, shown, suggestion
 from ...extras import install
 from ...files import check_archive, source
@@ -32,7 +34,7 @@ from .built import (
     is_here,
     is_our_build,
 )
-from .descriptions import declared_ports, is_ours, ports_of, tolerance_of, unsupported_outputs
+from .descriptions import declared_ports, is_ours, plain_names, ports_of, tolerance_of, unsupported_outputs
 from .facts import Facts, facts_of
 from .ports import Port, Value
 
@@ -213,6 +215,39 @@ class Fmu:
             port = self.port(self.name_of(key), f"{name}.units")
             ports[port.name] = port.with_unit(unit, None, f"{name}.units.{key}")
         return replace(self, ports=ports)
+
+    def elements(self, name: str) -> list[Port]:
+        """The elements of an array, given the name of it that scenes or the FMU have; none of a scalar."""
+        return self._arrays.get(name, [])
+
+    @cached_property
+    def _arrays(self) -> dict[str, list[Port]]:
+        found: dict[str, list[Port]] = {}
+        for port in self.ports.values():
+            if port.array:
+                found.setdefault(port.array, []).append(port)
+        return dict(zip(plain_names(found), found.values(), strict=True)) | found
+
+    @property
+    def inner(self) -> list[str]:
+        """The names of locals that a scene may record; of ours, what is of use to others is an output."""
+        known = () if self.component or self.ours else self.ports.values()
+        return [port.name for port in known if port.causality == "local" and port.name not in SHARED]
+
+    def with_outputs(self, names: Iterable[str]) -> "Fmu":
+        """This FMU with locals that are recorded as its outputs are."""
+        added = {name: replace(self.ports[name], causality="output", inner=True) for name in names}
+        return replace(self, ports=self.ports | added)
+
+    def with_tolerance(self, given: Any, where: str) -> "Fmu":
+        """This FMU with another relative tolerance for its solver. Raises LoomfmuError."""
+        try:
+            tolerance = units.parse(given, "1")
+        except units.UnitError as error:
+            raise LoomfmuError(f"{where}: {error}") from None
+        if not 0.0 < tolerance < math.inf:
+            raise LoomfmuError(f"{where} = {shown(given)} must be a finite number above 0")
+        return replace(self, tolerance=tolerance)
 
     def as_shaft(self) -> "Fmu":
         """This FMU in the place of the main shaft: it outputs the angle, and its other outputs are rates."""

@@ -8,9 +8,11 @@ from typing import Any
 from ... import units
 from ...declaring.variables import ALONE, Beside
 from ...errors import LoomfmuError, listed, misspelt, numbered, shown
+from .conversions import SAME, SCALES, Definition, Linear, Stated, stated
 
 Value = float | int | bool
 _WHOLE = re.compile(r"\s*[-+]?[0-9]{1,400}\s*")  # as a real a longer one is infinite
+ELEMENT = 2**32  # references of an array's elements count these from 1, beyond the array's own
 CARRIED = (-(2**31), 2**31 - 1)  # the integers that a master carries: those of FMI 2.0
 # what variables of an FMI type can hold; the others hold any finite number
 RANGES: dict[str, tuple[float, float]] = {
@@ -20,54 +22,6 @@ RANGES: dict[str, tuple[float, float]] = {
     **{f"UInt{size}": (0, 2**size - 1) for size in (8, 16, 32, 64)},
     "Float32": (-3.4028234663852886e38, 3.4028234663852886e38),
 }
-BASES = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
-
-
-@dataclass(frozen=True)
-class Definition:
-    """The definition of a unit in an FMU: exponents of `BASES`, factor and offset."""
-
-    exponents: tuple[int, ...]
-    factor: float = 1.0
-    offset: float = 0.0
-
-    def __post_init__(self) -> None:
-        if self.factor == 0.0 or not math.isfinite(self.factor) or not math.isfinite(self.offset):
-            raise ValueError(f"a unit has the factor {self.factor:g} and the offset {self.offset:g}")
-
-    def agrees(self, other: "Definition") -> bool:
-        """Return whether both mean the same; factors are printed with ten digits or more."""
-        near = math.isclose(self.factor, other.factor, rel_tol=1e-9)
-        return self.exponents == other.exponents and near and self.offset == other.offset
-
-    def without_rad(self) -> "Definition":
-        """The same with radians taken as 1."""
-        return replace(self, exponents=(*self.exponents[:-1], 0))
-
-
-def own_definition(name: str) -> Definition:
-    """The definition of one of our own units."""
-    known = units.unit(name)
-    return Definition(tuple(getattr(known, base, 0) for base in BASES), known.factor)
-
-
-def own_name(name: str, definition: Definition | None) -> str:
-    """Return our name of an FMU's unit, or an empty text for an unknown one.
-
-    >>> own_name("m/s^2", Definition((0, 1, -2, 0, 0, 0, 0, 0))), own_name("rpm", None), own_name("lx", None)
-    ('m/s2', 'rev/min', '')
-    """
-    usual = units.canonical(name)
-    if usual in units.UNITS:
-        own = own_definition(usual)
-        # rad is 1 in SI: many tools leave it out of rad/s
-        if definition is None or own.agrees(definition) or own.without_rad().agrees(definition.without_rad()):
-            return usual
-    if definition is not None:
-        for candidate in units.UNITS:
-            if own_definition(candidate).agrees(definition):
-                return candidate
-    return ""
 
 
 def shown_in(name: str, display: str = "") -> str:
@@ -86,7 +40,8 @@ class Port:
 
     `name` is what scenes and traces call it: letters, digits and _. `own` is the FMU's own name for it,
     `base_type` its type there.
-    `beside` are the outputs that say more of it.
+    `beside` are the outputs that say more of it. `inner` is a local that a scene records as it does outputs.
+    `array` is the FMU's name of the array that it is an element of; then `reference` has its number, too.
     """
 
     name: str
@@ -109,6 +64,13 @@ class Port:
     definition: Definition | None = None
     nominal: float | None = None
     beside: Beside = ALONE
+    inner: bool = False
+    array: str = ""
+
+    @property
+    def stated(self) -> Stated | None:
+        """Its unit; None where none is stated, or for what is not a real number."""
+        return Stated(self.unit, self.definition) if self.has_unit and self.kind == "Real" else None
 
     def doubt(self, given: Any, where: str) -> str:
         """Return a warning about a number without unit, as `units.doubt` words it, or an empty text."""
@@ -166,6 +128,13 @@ class Port:
         return self.numbers[self.choices.index(found)]
 
     def _quantity(self, given: Any) -> float:
+        own, scale = self.stated, next((each for each in SCALES if str(given).endswith(each)), "")
+        if scale and own and scale != own.name:  # such as "25 degC" for an input in K
+            number = units.parse(given.strip().removesuffix(scale), "1")
+            try:
+                return Stated(scale, SCALES[scale]).conversion(own)(number)
+            except ValueError:
+                raise units.UnitError(f"{given} does not fit {units.fitted(own.name)}") from None
         if self.unit in units.UNITS:
             return units.parse(given, self.unit)
         if isinstance(given, str):  # a unit that is the FMU's alone can only be repeated
@@ -196,15 +165,19 @@ class Port:
 
     def with_unit(self, unit: str, definition: Definition | None, where: str) -> "Port":
         """The port with the unit that a scene says it has. Raises LoomfmuError where the FMU says another."""
-        name = own_name(unit, definition) or unit
-        if not name or self.kind != "Real":
+        said = stated(unit, definition)
+        if said is None or self.kind != "Real":
             raise LoomfmuError(f"{where} = {unit!r}: {self.name} is not a real variable, so it has no unit")
-        if definition is None and name in units.UNITS:
-            definition = own_definition(name)
-        stated = replace(self, unit=name, display=shown_in(name), has_unit=True, definition=definition)
-        if self.has_unit and _differ(self, stated):
+        if self.stated is None:
+            shown_as, known = shown_in(said.name), said.definition
+            return replace(self, unit=said.name, display=shown_as, has_unit=True, definition=known)
+        try:
+            agrees = said.conversion(self.stated) == SAME
+        except ValueError:
+            agrees = False
+        if not agrees:
             raise LoomfmuError(f"{where} = {unit!r}: the FMU itself says {self.unit}")
-        return self if self.has_unit else stated
+        return self
 
 
 def _joined(choice: str) -> str:
@@ -212,34 +185,15 @@ def _joined(choice: str) -> str:
     return "_".join(re.split(r"[\s_-]+", choice.strip()))
 
 
-def _differ(one: Port, other: Port) -> bool:
-    if one.definition is not None and other.definition is not None:
-        return not one.definition.agrees(other.definition)
-    return one.unit != other.unit
+def conversion(source: str, origin: Stated | None, sink: str, to: Stated | None) -> Linear:
+    """Return what leads from a value in the unit of one end of a wire to one in that of the other end.
 
-
-def mismatch(source: str, origin: Port, sink: str, to: Port) -> str:
-    """Return why the units of two ports prevent a wire, or an empty text if they do not.
-
-    A wire converts nothing, and a unit that is not stated is not guessed.
+    A value that has no unit at one end is handed over as it is. Raises LoomfmuError for units that do not
+    fit each other.
     """
-    if not origin.has_unit and not to.has_unit:
-        return ""
-    if not (origin.has_unit and to.has_unit):
-        lacking, port = (source, origin) if to.has_unit else (sink, to)
-        other, unit = (sink, to.unit) if to.has_unit else (source, origin.unit)
-        instance = lacking.split(".")[0]
-        return (
-            f"{lacking} has no unit, {other} is in {unit};"
-            f' say what it is: [{instance}] units = {{{port.name} = "..."}} in a scene,'
-            f" or --set {instance}.units.{port.name}=..."
-        )
-    if not _differ(origin, to):
-        return ""
-    reason = f"{source} is in {origin.unit}, {sink} in {to.unit}"
-    if origin.unit == to.unit:
-        return f"{reason}, and the two FMUs define that unit differently"
-    if origin.definition and to.definition and origin.definition.exponents == to.definition.exponents:
-        factor = origin.definition.factor / to.definition.factor
-        reason += f": 1 {origin.unit} is {factor:.9g} {to.unit}, and a wire converts nothing"
-    return reason
+    if origin is None or to is None:
+        return SAME
+    try:
+        return origin.conversion(to)
+    except ValueError as error:
+        raise LoomfmuError(f"{source} is in {origin.name}, {sink} in {to.name}{error}") from None

@@ -1,5 +1,6 @@
 """The values of a run in memory, and the calls that move them between the FMUs."""
 
+import ctypes
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -7,6 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..importing.calls import converting
+from ..importing.conversions import SAME
 from ..importing.slave import SIZES, Slave
 from ..scenes.graph import Wire
 from ..scenes.scene import Scene
@@ -122,10 +125,11 @@ class Signals:
         Sources that are side by side go in one call.
         """
         instance = self.scene.instances[name]
+        wires = [wire for wire in self.scene.wires if wire.sink[0] == name]
         wired = [
             (*self.slots[wire.source], instance.fmu.ports[wire.sink[1]].reference)
-            for wire in self.scene.wires
-            if wire.sink[0] == name
+            for wire in wires
+            if wire.conversion == SAME
         ] + [
             (*self.slots[name, drive.variable], instance.fmu.ports[drive.variable].reference)
             for drive in self.scene.drives
@@ -141,7 +145,21 @@ class Signals:
             Action(slave, call)
             for kind, slot, references in runs
             for call in slave.value_calls("Set", kind, references, self._address(kind, slot))
+        ] + self._converted(slave, [wire for wire in wires if wire.conversion != SAME])
+
+    def _converted(self, slave: Slave, wires: Sequence[Wire]) -> list[Action]:
+        """Calls that convert values of some wires and hand them over."""
+        if not wires:
+            return []
+        values = (ctypes.c_double * len(wires))()
+        place = ctypes.addressof(values)
+        made = [
+            converting(wire.conversion, self._address(*self.slots[wire.source]), values, number)
+            for number, wire in enumerate(wires)
         ]
+        references = [slave.fmu.ports[wire.sink[1]].reference for wire in wires]
+        calls = [*made, *slave.value_calls("Set", "Real", references, place)]
+        return [Action(slave, call) for call in calls]
 
     def outputs(self, name: str, slave: Slave) -> list[Action]:
         """Calls that fetch an instance's outputs, one for each type."""

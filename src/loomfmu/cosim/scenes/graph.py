@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import LoomfmuError, shown
+from ..importing.conversions import SAME, Linear
 from ..importing.fmus import Port, Value
 from .settings import ITERATED, LAGGED
 
@@ -20,10 +21,11 @@ LATEST = 1e9  # revolutions or seconds: no scene is longer
 
 @dataclass(frozen=True)
 class Wire:
-    """From an output to an input, each as (instance, variable)."""
+    """From an output to an input, each as (instance, variable); `conversion` is made of its values."""
 
     source: tuple[str, str]
     sink: tuple[str, str]
+    conversion: Linear = SAME
 
     def __str__(self) -> str:
         return f"{'.'.join(self.source)} -> {'.'.join(self.sink)}"

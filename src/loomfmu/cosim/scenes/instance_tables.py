@@ -15,7 +15,7 @@ from ..importing.facts import facts_of
 from ..importing.fmus import Fmu
 from ..standard import standard
 from .instances import Instance, check_name, is_numbered, members, stem
-from .settings import KEYS, TIMES, WHOLE
+from .settings import KEYS, TIMES, WHOLE, dotted
 
 WEAVE = "loom.weave"  # the frames depend on it, so it is set before there are instances
 
@@ -33,6 +33,7 @@ def read(tables: dict[str, Any], overrides: Mapping[str, Any], directory: Path) 
     rest = _override_weave(tables, overrides)
     texts = standard().resolve(tables, directory)
     given = _instance_tables(tables, directory)
+    state_units(given, tables.get("units", {}))
     changed = {key for key in rest if override(given, key, rest)}
     instances = {
         name: Instance(name, _fmu_of(name, table, directory, texts)) for name, table in given.items()
@@ -160,6 +161,19 @@ def override(given: dict[str, dict[str, Any]], key: str, overrides: Mapping[str,
             value = {**stated, about: value} if isinstance(stated, dict) else stated
         given[name] = given[name] | {"units" if about else variable: value}
     return bool(named)
+
+
+def state_units(given: dict[str, dict[str, Any]], stated: Any) -> None:
+    """Put the units of a scene's own table into those of instances, which prevail."""
+    if not isinstance(stated, dict):
+        raise LoomfmuError('units must be a table of "instance.variable" = "unit"')
+    for key, unit in dotted(stated).items():
+        name, _, variable = key.partition(".")
+        if name not in given:
+            raise LoomfmuError(f"units.{key}: there is no instance {name!r}{suggestion(name, given)}")
+        own = given[name].get("units", {})
+        if isinstance(own, dict):
+            given[name] = given[name] | {"units": {variable: unit} | dotted(own)}
 
 
 def unit_of(key: str) -> str:

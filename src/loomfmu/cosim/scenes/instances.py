@@ -15,6 +15,7 @@ from ..importing.fmus import Fmu, Port, Value
 from ..standard import standard
 from .settings import KEYS, truth
 
+TOLERANCE = "tolerance"  # of the solver in a third-party FMU
 NAME = re.compile("[A-Za-z][A-Za-z0-9_]*")
 TAKEN = ("time", "shaft_angle")  # what a trace has beside its instances
 TYPES: dict[str, Callable[[Value], Value]] = {"Real": float, "Integer": int, "Boolean": bool}
@@ -52,13 +53,26 @@ class Instance:
                 raise LoomfmuError(f"{self.name}.pattern: a {self.fmu.name} has no pattern")
             self.values |= standard().pattern(given, f"{self.name}.pattern")
             return
+        if elements := self.fmu.elements(key):
+            content = _flat(given)
+            if len(content) != len(elements):
+                shape = elements[-1].own.removeprefix(elements[-1].array)
+                raise LoomfmuError(
+                    f"{self.name}.{key} is an array up to {shape}: {len(elements)} values, not {len(content)}"
+                )
+            for port, each in zip(elements, content, strict=True):
+                self.set(port.name, each)
+            return
         name = self.fmu.name_of(key)
         if key == ISOLATED and name not in self.fmu.ports:
             self.isolated = truth(given, f"{self.name}.{key}")
             return
+        if key == TOLERANCE and name not in self.fmu.ports and not self.fmu.ours:
+            self.fmu = self.fmu.with_tolerance(given, f"{self.name}.{key}")
+            return
         if name not in self.fmu.ports:
             settable = {port.name: port.description for port in self.fmu.ports.values() if _can_be_set(port)}
-            extra = PARAMETER_SETS if self.fmu.built else FILES
+            extra = PARAMETER_SETS if self.fmu.built else (*FILES, TOLERANCE)
             hint = suggestion(key, [*settable, *extra, ISOLATED], settable)
             if key in KEYS:
                 hint = f": {key} belongs to the scene, write it above the first [table]"
@@ -206,6 +220,11 @@ def altered(original: Copied, **others: Any) -> Copied:
     made = object.__new__(type(original))
     made.__dict__.update(original.__dict__, **others)
     return made
+
+
+def _flat(given: Any) -> list[Any]:
+    """The values of an array row by row, of lists in lists."""
+    return [value for each in given for value in _flat(each)] if isinstance(given, list) else [given]
 
 
 def _can_be_set(port: Port) -> bool:

@@ -7,6 +7,7 @@ from typing import Any
 from ... import machines
 from ...components.terminals import SHAFT
 from ...errors import LoomfmuError, listed
+from ..importing.conversions import SAME
 from ..standard import standard
 from .graph import Drive, Wire
 from .instances import Instance
@@ -29,6 +30,8 @@ def of_scene(
         if drive.periods[0] >= end:
             name, start = f"inputs.{drive.instance}.{drive.variable}", drive.periods[0]
             yield f"{name} begins at {start:g}, after the end at {end:g}: its first value holds throughout"
+    yield from _unitless(instances, wires)
+    yield from _unitless(instances, wires)
     yield from _mixed(instances, wires)
     fed = {wire.sink for wire in wires} | {(drive.instance, drive.variable) for drive in drives}
     for name, each in instances.items() if "shaft" in instances else ():
@@ -44,6 +47,23 @@ def of_scene(
     yield from standard().added(tables, directory)
     yield from _still(instances, tables.get("wires", {}), fed)
     yield from (note for _, note in _switched_off(instances, keys))
+
+
+def _unitless(instances: dict[str, Instance], wires: list[Wire]) -> Iterator[str]:
+    """One warning that names all wires with a unit at one end alone."""
+    found: list[str] = []
+    lacking: tuple[str, str] = ("", "")
+    for wire in wires:
+        ends = {end: instances[end[0]].fmu.ports[end[1]].stated for end in (wire.source, wire.sink)}
+        known = next(filter(None, ends.values()), None)
+        if known and None in ends.values() and wire.conversion == SAME:
+            lacking = next(end for end, unit in ends.items() if unit is None)
+            found.append(f"{wire} in {known.name}")
+    if found:
+        yield (
+            f"values pass unchanged on wires with a unit at one end only: {listed(found)}; state the others"
+            f' in [units], as "{".".join(lacking)}" = "...", or by --set {".units.".join(lacking)}=...'
+        )
 
 
 def _mixed(instances: dict[str, Instance], wires: list[Wire]) -> list[str]:

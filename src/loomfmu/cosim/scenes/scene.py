@@ -1,6 +1,7 @@
 """Scenes: what is simulated, for how long, what is recorded and what is claimed of it."""
 
 import contextlib
+import fnmatch
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -213,6 +214,7 @@ def assemble(
     drives = drives_of(instances, wires, tables.get("inputs", {}))
     for drive in drives:
         instances[drive.instance].follow(drive.variable)
+    _ask_for_locals(tables.get("record"), instances)
     outputs = (f"{name}.{variable}" for name, each in instances.items() for variable in each.fmu.outputs)
     fields = settings_of(tables, origin["name"], dict.fromkeys(outputs), speed)
     if fields["coupling"] is None:
@@ -225,6 +227,17 @@ def assemble(
     found = notes.of_scene(tables, scene.directory, instances, wires, drives, keys, scene.periods)
     scene.notes = (*scene.notes, *found)
     return scene
+
+
+def _ask_for_locals(patterns: Any, instances: Mapping[str, Instance]) -> None:
+    """Let locals that are recorded be outputs: by name, or by a pattern that fits no output of their FMU."""
+    for pattern in map(str, patterns) if isinstance(patterns, list) else ():
+        owner, _, variable = pattern.partition(".")
+        for each in (instances[name] for name in fnmatch.filter(instances, owner)):
+            inner = each.fmu.inner
+            found = [variable] if variable in inner else fnmatch.filter(inner, variable)
+            if variable in found or not fnmatch.filter(each.fmu.outputs, variable):
+                each.fmu = each.fmu.with_outputs(found)
 
 
 def _speed(instances: Mapping[str, Instance]) -> float | None:

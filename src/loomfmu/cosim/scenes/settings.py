@@ -17,7 +17,10 @@ MAY_END = "may_end"  # whether an FMU may end the run early
 TIMES = ("revolutions", "steps_per_revolution", "duration", "step")
 # keys of the scene itself that can be set beside its times
 WHOLE = (ACCURACY, "grid", COARSE, "coupling", ISOLATED, MAY_END, "step_timeout", "run_timeout")
-KEYS = ("title", "description", *TIMES, *WHOLE, "record", "loom", "wires", "inputs", "claims", "tolerances")
+KEYS = (
+    *("title", "description", *TIMES, *WHOLE, "record", "loom", "wires", "inputs", "units"),
+    *("claims", "tolerances"),
+)
 LAGGED, ITERATED = COUPLINGS = ("lagged", "iterated")
 UNIFORM, WINDOWS = GRIDS = ("uniform", "windows")
 CHOSEN = ("steps_per_revolution", "grid", COARSE)  # what an accuracy chooses
@@ -73,6 +76,14 @@ def texts_in(tables: Any) -> Iterator[tuple[str, str]]:
         level = below
     if level:
         raise LoomfmuError(TOO_DEEP)
+
+
+def dotted(table: dict[str, Any], prefix: str = "") -> dict[str, Any]:
+    """A TOML table with its keys joined by dots, quoted or not."""
+    flat: dict[str, Any] = {}
+    for key, value in table.items():
+        flat |= dotted(value, f"{prefix}{key}.") if isinstance(value, dict) else {prefix + key: value}
+    return flat
 
 
 def replaced(keys: Collection[str]) -> tuple[str, ...]:

@@ -7,11 +7,13 @@ from typing import Any
 from ...components import COMPONENTS
 from ...declaring.variables import Terminal, Variable
 from ...errors import LoomfmuError, shown, suggestion
+from ..importing.conversions import SAME, Linear
 from ..importing.facts import ALL, Facts, facts_of
-from ..importing.ports import mismatch
+from ..importing.ports import conversion
 from ..standard import standard
 from .graph import Drive, Wire, drive
 from .instances import Instance, is_numbered, members, stem
+from .settings import dotted
 
 Known = Mapping[str, Facts]  # of the instances whose component is known, by their names
 
@@ -46,7 +48,8 @@ def wires_of(instances: dict[str, Instance], scene: Mapping[str, Any]) -> list[W
                 raise LoomfmuError(f"wires: {sink!r} is not wired{suggestion(sink, sources)}")
         else:
             sources[sink] = source
-    wires = [wire(instances, sink, source) for sink, source in sources.items()]
+    pairs = (pair for sink, source in sources.items() for pair in elements(instances, sink, source))
+    wires = [wire(instances, sink, source) for sink, source in pairs]
     fed = {each.sink for each in wires}
     for inheriting in instances.values():
         inheriting.inherit(instances, fed)
@@ -55,16 +58,8 @@ def wires_of(instances: dict[str, Instance], scene: Mapping[str, Any]) -> list[W
     return wires
 
 
-def dotted(table: dict[str, Any], prefix: str = "") -> dict[str, Any]:
-    """A TOML table with its keys joined by dots, quoted or not."""
-    flat: dict[str, Any] = {}
-    for key, value in table.items():
-        flat |= dotted(value, f"{prefix}{key}.") if isinstance(value, dict) else {prefix + key: value}
-    return flat
-
-
-def wire(instances: dict[str, Instance], sink: str, source: Any) -> Wire:
-    """A wire whose ends are known, of the right kind and of the same unit."""
+def wire(instances: dict[str, Instance], sink: str, source: Any, known: Linear | None = None) -> Wire:
+    """A wire whose ends are known and of the right kind; its units are converted, if that is not `known`."""
     if not isinstance(source, str):
         raise LoomfmuError(
             f'wires: "{sink}" = {shown(source).lower()} must be an output, or false to cut the wire'
@@ -86,10 +81,28 @@ def wire(instances: dict[str, Instance], sink: str, source: Any) -> Wire:
     to, origin = (instances[name].fmu.ports[variable] for name, variable in ends)
     if origin.kind != to.kind:
         raise LoomfmuError(f"{where}: {source} is of type {origin.kind}, {sink} of type {to.kind}")
-    reason = mismatch(str(source), origin, sink, to)
-    if reason:
-        raise LoomfmuError(f"{where}: {reason}")
-    return Wire(source=ends[1], sink=ends[0])
+    if known is None:
+        try:
+            known = conversion(source, origin.stated, sink, to.stated)
+        except LoomfmuError as error:
+            raise LoomfmuError(f"{where}: {error}") from None
+    elif known != SAME and to.kind != "Real":
+        raise LoomfmuError(f"{where}: a value of type {to.kind} cannot be transformed")
+    return Wire(source=ends[1], sink=ends[0], conversion=known)
+
+
+def elements(instances: dict[str, Instance], sink: str, source: Any) -> list[tuple[str, Any]]:
+    """The wires that one between arrays stands for, or itself."""
+    parts = [str(end).partition(".") for end in (sink, source)]
+    arrays = [
+        instances[name].fmu.elements(variable) if name in instances else [] for name, _, variable in parts
+    ]
+    ends = [[f"{part[0]}.{each.name}" for each in array] for part, array in zip(parts, arrays, strict=True)]
+    if not any(ends):
+        return [(sink, source)]
+    if len(ends[0]) != len(ends[1]):
+        raise LoomfmuError(f"wire {source} -> {sink}: {len(ends[1]) or 1} values for {len(ends[0]) or 1}")
+    return list(zip(*ends, strict=True))
 
 
 def drives_of(instances: dict[str, Instance], wires: list[Wire], table: Any) -> list[Drive]:

@@ -1,68 +1,119 @@
 """The connections of a system package as wires, straight through the connectors of its systems."""
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Container, Iterator, Mapping
+from dataclasses import dataclass
 from xml.etree.ElementTree import Element
 
 from ...errors import LoomfmuError, shown, suggestion
+from ..importing.conversions import SAME, Linear, Stated
+from ..importing.ports import conversion
 from ..scenes.graph import Wire
 from ..scenes.instances import Instance
-from ..scenes.wiring import wire
-from .xml import full, real, required
+from ..scenes.wiring import elements, wire
+from .structure import Node, connectors, dictionary, systems
+from .xml import full, required, suppressed, transformed
 
-Node = tuple[tuple[str, ...], str]  # an element, as the names that lead to it, and a connector of it
 Names = Mapping[tuple[str, ...], str]  # the instance that each component is, by the names that lead to it
+
+
+@dataclass(frozen=True)
+class Link:
+    """A connection, from either end: what it makes of values, with or without converting units."""
+
+    transformation: Linear
+    suppressed: bool
+
+
+@dataclass(frozen=True)
+class Reached:
+    """A connector that a value reaches, and what became of the value on its way: its number and its unit."""
+
+    node: Node
+    conversion: Linear
+    unit: Stated | None
 
 
 class Nets:
     """Connectors that connections join, be it through connectors of systems.
 
-    Start and end of a connection do not say which way values go: causalities do.
+    Start and end of a connection do not say which way values go: causalities do. `units` are those of the
+    connectors of systems.
     """
 
-    def __init__(self, system: Element, instances: dict[str, Instance], names: Names):
-        self._instances, self._names = instances, names
-        self._nets = _joined(system)
-        self._causality = {node: _causality(node, instances, names) for node in self._nets}
+    def __init__(
+        self,
+        system: Element,
+        instances: dict[str, Instance],
+        names: Names,
+        units: Mapping[Node, Stated | None],
+    ):
+        self._instances, self._names, self._units = instances, names, units
+        self._links: dict[Node, list[tuple[Node, Link]]] = {}
+        for one, other, link in _connections(system, units):
+            self._links.setdefault(one, []).append((other, link))
+            self._links.setdefault(other, []).append((one, link))
+        self._causality = {node: _causality(node, instances, names) for node in self._links}
 
     @property
     def wires(self) -> list[Wire]:
         """Wires from outputs to inputs."""
-        wires: dict[Wire, None] = {}
-        for node, net in self._nets.items():
-            if self._causality[node] != "input":
-                continue
-            sources = self._outputs(net)
-            sink = f"{self._names[node[0]]}.{node[1]}"
-            if len(sources) > 1:
-                raise LoomfmuError(f"{sink} is connected to {len(sources)} outputs")
-            for path, connector in sources:  # none where it leads to a connector of the whole system
-                wires[wire(self._instances, sink, f"{self._names[path]}.{connector}")] = None
-        return list(wires)
+        sources: dict[Node, dict[Node, Linear]] = {}
+        for output in [node for node, causality in self._causality.items() if causality == "output"]:
+            for end in self._flow(output, self._unit(output)):
+                if self._causality[end.node] == "input":
+                    sources.setdefault(end.node, {})[output] = end.conversion
+        wires: list[Wire] = []
+        for sink in self._links:
+            found, name = sources.get(sink, {}), f"{self._names.get(sink[0])}.{sink[1]}"
+            if len(found) > 1:
+                raise LoomfmuError(f"{name} is connected to {len(found)} outputs")
+            for (path, connector), made in found.items():
+                pairs = elements(self._instances, name, f"{self._names[path]}.{connector}")
+                wires += [wire(self._instances, to, source, made) for to, source in pairs]
+        return list(dict.fromkeys(wires))
 
-    def reached(self, node: Node) -> list[tuple[str, str]]:
-        """Return instances and variables that take the value of a system's connector.
+    def reached(self, node: Node, unit: Stated | None) -> list[Reached]:
+        """Return the variables that take a value of a system's connector, in a unit.
 
         None do where it is not connected, or where an output of an FMU gives the value.
         """
-        net = self._nets.get(node, [])
-        takers = [each for each in net if self._causality[each] in ("input", "parameter")]
-        return [] if self._outputs(net) else [(self._names[path], variable) for path, variable in takers]
+        found = list(self._flow(node, unit)) if node in self._links else []
+        causality = [self._causality[each.node] for each in found]
+        takers = zip(found, causality, strict=True)
+        return [each for each, kind in takers if kind in ("input", "parameter") and "output" not in causality]
 
-    def _outputs(self, net: Collection[Node]) -> list[Node]:
-        return [each for each in net if self._causality[each] == "output"]
+    def variable(self, node: Node) -> tuple[str, str]:
+        """The instance and the variable that a connector of a component is."""
+        return self._names[node[0]], node[1]
 
+    def _unit(self, node: Node) -> Stated | None:
+        """The unit of a connector, if there is one."""
+        name = self._names.get(node[0])
+        if name is None:
+            return self._units.get(node)
+        fmu = self._instances[name].fmu
+        return (fmu.elements(node[1]) or [fmu.ports[fmu.name_of(node[1])]])[0].stated
 
-def _joined(system: Element) -> dict[Node, list[Node]]:
-    """The net of each connector, in the order of the connections."""
-    nets: dict[Node, list[Node]] = {}
-    for one, other in _connections(system):
-        joined, added = sorted(
-            (nets.setdefault(node, [node]) for node in (one, other)), key=len, reverse=True
-        )
-        if joined is not added:
-            joined += added
-            nets |= dict.fromkeys(added, joined)
-    return nets
+    def _flow(self, start: Node, unit: Stated | None) -> Iterator[Reached]:
+        """Yield what a value reaches, through connectors of systems and itself first.
+
+        A unit is converted before the transformation of its connection, as the standard has it.
+        """
+        found = {start: Reached(start, SAME, unit)}
+        waiting = [found[start]]
+        for here in waiting:
+            yield here
+            if here.node != start and self._causality[here.node] == "output":
+                continue  # it gives a value of its own
+            for node, link in self._links[here.node]:
+                if node in found:
+                    continue
+                to, made = self._unit(node), SAME
+                if not link.suppressed:
+                    made = conversion(f"connection from {_dotted(here.node)}", here.unit, _dotted(node), to)
+                total = here.conversion.then(made).then(link.transformation)
+                found[node] = Reached(node, total, to or here.unit)
+                waiting.append(found[node])
 
 
 def _causality(node: Node, instances: dict[str, Instance], names: Names) -> str:
@@ -71,34 +122,50 @@ def _causality(node: Node, instances: dict[str, Instance], names: Names) -> str:
     if name is None:
         return ""
     fmu = instances[name].fmu
+    if array := fmu.elements(node[1]):
+        return array[0].causality
     return fmu.port(fmu.name_of(node[1]), f"connection to {name}").causality
 
 
-def _connections(system: Element, path: tuple[str, ...] = ()) -> Iterator[tuple[Node, Node]]:
-    """The two ends of each connection of a system and of the systems in it."""
-    elements = {required(each, "name"): each for each in system.iterfind(f"{full('ssd:Elements')}/*")}
-    systems = {name: each for name, each in elements.items() if each.tag == full("ssd:System")}
-    connectors = {(*path, name): _connectors(each) for name, each in systems.items()}
-    connectors[path] = _connectors(system)
-    for connection in system.iterfind(f"{full('ssd:Connections')}/{full('ssd:Connection')}"):
-        ends = []
-        for which in ("start", "end"):
-            owner = connection.get(f"{which}Element") or None  # OMSimulator has an empty name for none
-            node = (path if owner is None else (*path, owner), required(connection, f"{which}Connector"))
-            if owner is not None:
-                _check_known(node, "element", owner, elements)
-            if node[0] in connectors:
-                _check_known(node, "connector of a system", node[1], connectors[node[0]])
-            ends.append(node)
-        _check_plain(connection, ends)
-        yield ends[0], ends[1]
-    for name, element in systems.items():
-        yield from _connections(element, (*path, name))
+def _connections(system: Element, passing: Container[Node]) -> Iterator[tuple[Node, Node, Link]]:
+    """The two ends of each connection of a system and of the systems in it, and what it does to values.
+
+    A connector of a reference to a signal dictionary is connected to the entry of that.
+    """
+    for path, owner in systems(system):
+        elements = {required(each, "name"): each for each in owner.iterfind(f"{full('ssd:Elements')}/*")}
+        for connection in owner.iterfind(f"{full('ssd:Connections')}/{full('ssd:Connection')}"):
+            ends = [_end(connection, which, path, owner, elements) for which in ("start", "end")]
+            transformation = transformed(connection, f"connection {' -> '.join(map(_dotted, ends))}")
+            yield ends[0], ends[1], Link(transformation, suppressed(connection))
+        for name, each in elements.items():
+            if each.tag == full("ssd:SignalDictionaryReference"):
+                wanted = required(each, "dictionary")
+                homes = (dictionary(path[:depth], wanted) for depth in range(len(path), -1, -1))
+                home = next((home for home in homes if (home, "") in passing), None)
+                if home is None:
+                    raise LoomfmuError(f"{name}: there is no signal dictionary {shown(wanted)}")
+                for entry in (required(connector, "name") for connector in connectors(each)):
+                    if (home, entry) not in passing:
+                        raise LoomfmuError(f"{name}: {wanted} has no entry {shown(entry)}")
+                    yield ((*path, name), entry), (home, entry), Link(SAME, suppressed=False)
 
 
-def _connectors(system: Element) -> set[str]:
-    listed = system.iterfind(f"{full('ssd:Connectors')}/{full('ssd:Connector')}")
-    return {required(each, "name") for each in listed}
+def _end(
+    connection: Element, which: str, path: tuple[str, ...], system: Element, elements: Mapping[str, Element]
+) -> Node:
+    """An end of a connection in a system. Raises LoomfmuError where there is no such connector."""
+    if connection.get(f"{which}Indices") is not None:
+        raise LoomfmuError(f"{which}Indices = {shown(connection.get(f'{which}Indices'))} is not supported")
+    owner = connection.get(f"{which}Element") or None  # OMSimulator has an empty name for none
+    node = (path if owner is None else (*path, owner), required(connection, f"{which}Connector"))
+    if owner is not None:
+        _check_known(node, "element", owner, elements)
+    element = system if owner is None else elements[owner]
+    if element.tag != full("ssd:Component"):
+        known = [required(each, "name") for each in connectors(element)]
+        _check_known(node, "connector of a system", node[1], known)
+    return node
 
 
 def _check_known(node: Node, kind: str, name: str, known: Collection[str]) -> None:
@@ -111,16 +178,3 @@ def _check_known(node: Node, kind: str, name: str, known: Collection[str]) -> No
 
 def _dotted(node: Node) -> str:
     return ".".join((*node[0], node[1]))
-
-
-def _check_plain(connection: Element, ends: list[Node]) -> None:
-    """Refuse a connection that changes its value on the way."""
-    for child in connection:
-        linear = child.tag == full("ssc:LinearTransformation")
-        if linear and real(child, "factor", 1.0) == 1.0 and real(child, "offset", 0.0) == 0.0:
-            continue
-        if child.tag.endswith("Transformation"):
-            raise LoomfmuError(
-                f"connection {' -> '.join(map(_dotted, ends))} transforms its value;"
-                " transformations are not supported"
-            )

@@ -19,8 +19,8 @@ from ...fmi.description.xml_text import text_of
 from ...fmi.native import platforms as native
 from ...version import __version__
 from ..importing import fmus
+from ..importing.conversions import Definition
 from ..importing.fmus import Fmu, Port, Value
-from ..importing.ports import Definition
 from ..scenes.headings import heading
 from ..scenes.instances import Instance
 from ..scenes.scene import Scene, files_of
@@ -203,7 +203,8 @@ def _connectors(scene: Scene) -> dict[str, tuple[list[Port], list[Port]]]:
     wired = {wire.source for wire in scene.wires}
     shown: dict[str, tuple[list[Port], list[Port]]] = {}
     for name, instance in scene.instances.items():
-        outputs = [port for port in instance.fmu.ports.values() if port.causality == "output"]
+        ports = instance.fmu.ports.values()
+        outputs = [port for port in ports if port.causality == "output" and not port.inner]
         kept = [port for port in outputs if port.base_type != "Enumeration" or (name, port.name) in wired]
         shown[name] = [], kept
     for wire in scene.wires:

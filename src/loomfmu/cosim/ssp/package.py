@@ -28,15 +28,26 @@ class Package:
         with _reading("cannot be read"):
             self._archive = zipfile.ZipFile(path)
         self._members = check_archive(self._archive)
+        self._inner: dict[str, Package] = {}
 
     def __enter__(self) -> "Package":
         return self
 
     def __exit__(self, *_: object) -> None:
+        for inner in self._inner.values():
+            inner.__exit__()
         self._archive.close()
+
+    def opened(self, reference: str) -> "Package":
+        """A package in the package. What it refers to is known here as "its reference!/the other one"."""
+        if reference not in self._inner:
+            self._inner[reference] = Package(self.unpacked(reference))
+        return self._inner[reference]
 
     def root(self, reference: str) -> Element:
         """The root of an XML file of the package."""
+        if inner := self._within(reference):
+            return inner[0].root(inner[1])
         name = self.member(reference)
         try:
             return fromstring(self._content(name))
@@ -54,6 +65,8 @@ class Package:
 
     def unpacked(self, reference: str) -> Path:
         """A file of the package, put where it can be read from."""
+        if inner := self._within(reference):
+            return inner[0].unpacked(inner[1])
         name = self.member(reference)
         with _reading(f"{name}: cannot be unpacked"):
             content = self._archive.read(name)
@@ -69,6 +82,11 @@ class Package:
         if outside or name not in self._members:
             raise LoomfmuError(f"{reference or 'a parameter set'} is not in the package")
         return name
+
+    def _within(self, reference: str) -> tuple["Package", str] | None:
+        """The package in this one that a reference leads into, and what that calls the file."""
+        found = (name for name in self._inner if reference.startswith(f"{name}!/"))
+        return next(((self._inner[name], reference[len(name) + 2 :]) for name in found), None)
 
     def _content(self, name: str) -> bytes:
         size = self._members[name].file_size

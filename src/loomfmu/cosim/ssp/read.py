@@ -1,4 +1,4 @@
-"""System packages (SSP 1.0) as scenes: our own, to the last bit, and those of other tools.
+"""System packages (SSP 1.0 and 2.0) as scenes: our own, to the last bit, and those of other tools.
 
 A package is read from its structure: elements, connections, parameter sets. What a structure cannot say,
 such as claims and what is recorded, is in the text of the scene that our own packages carry; another
@@ -13,19 +13,22 @@ from typing import Any
 from xml.etree.ElementTree import Element
 
 from ...declaring.variables import AT_STEP_END
-from ...errors import LoomfmuError, shown, why
+from ...errors import LoomfmuError, listed, shown, why
 from ...own.declared import PARAMETER_SETS
 from ..importing import fmus
+from ..importing.conversions import SAME, Stated
 from ..importing.descriptions import plain_names
 from ..importing.fmus import Fmu
-from ..scenes.instance_tables import overridden, override, prevailing, unit_of
+from ..importing.ports import conversion
+from ..scenes.instance_tables import overridden, override, prevailing, state_units, unit_of
 from ..scenes.instances import Instance, check_name
 from ..scenes.scene import Scene, assemble
 from ..scenes.settings import DEEPEST, TIMES, toml
-from .connections import Names, Nets, Node
+from .connections import Nets
 from .package import Package
+from .structure import Node, connectors, joining, stated_by, structure, systems
 from .values import Given, apply, bound
-from .xml import FMU, OSP, OURS, SSD_FILE, full, read_units, real, required
+from .xml import FMU, OSP, OURS, SSD_FILE, full, read_units, real, required, transformed
 
 # keys of a scene that no structure can hold
 KEPT = ("title", "description", "coupling", "record", "inputs", "claims", "tolerances")
@@ -59,7 +62,8 @@ class _Reader:
     def __init__(self, package: Package):
         self.package = package
         self.notes: list[str] = []
-        self.root = package.root(SSD_FILE)
+        self.unitless: list[str] = []  # values with a unit for variables without one
+        self.root = structure(package)
         self.units = read_units(self.root.iterfind(full("ssd:Units")))
 
     def scene(self, overrides: dict[str, Any]) -> Scene:
@@ -73,10 +77,17 @@ class _Reader:
         text = None if annotation is None else toml(annotation.text or "")
         stated = _stated(found, text or {}, overrides)
         instances = {name: self._instance(name, each.element, stated[name]) for name, each in found.items()}
-        nets = Nets(system, instances, names)
-        for name, values in self._values(system, found, names, nets).items():
+        passing = joining(self.package, self.root, system)
+        nets = Nets(system, instances, names, passing)
+        for name, values in self._values(system, found, nets, passing).items():
             self._set(instances[name], values, ours=text is not None)
+        if self.unitless:
+            taken = f"values are taken as they are where the variable has no unit: {listed(self.unitless)}"
+            lacking = self.unitless[0].partition(" ")[0].replace(".", ".units.", 1)
+            self.notes.append(f"{taken}; state it by --set {lacking}=...")
         wires = nets.wires
+        if text and text.get("claims") and any(transformed(each, "") != SAME for each in self.root.iter()):
+            raise LoomfmuError("a connection transforms its value, so the claims cannot be judged")
         tables = self._foreign_tables() if annotation is None else _our_tables(text or {}, annotation)
         if text is not None:
             for instance in instances.values():
@@ -108,35 +119,44 @@ class _Reader:
     # ---- instances
 
     def _values(
-        self, system: Element, found: Mapping[str, _Found], names: Names, nets: Nets
+        self,
+        system: Element,
+        found: Mapping[str, _Found],
+        nets: Nets,
+        passing: Mapping[Node, Stated | None],
     ) -> dict[str, list[Given]]:
         """The values of each instance in the order they are set: those of outer systems last."""
         values = {name: list(bound(each.element, self.package.root)) for name, each in found.items()}
-        dotted = {".".join(path): name for path, name in names.items()}
-        connectors = _system_connectors(system)
-        for path, element in reversed(list(_systems(system))):  # the outermost last: it prevails
+        dotted = {".".join(each.path): name for name, each in found.items()}
+        for path, element in reversed(list(systems(system))):  # the outermost last: it prevails
             for given in bound(element, self.package.root):
-                taken = _in_component(path, given, dotted) or self._by_wires(path, given, connectors, nets)
+                taken = _in_component(path, given, dotted) or self._by_wires(path, given, passing, nets)
                 for name, value in taken:
                     values[name].append(value)
         return values
 
     def _by_wires(
-        self, path: Sequence[str], given: Given, connectors: Mapping[Node, str], nets: Nets
+        self, path: Sequence[str], given: Given, passing: Mapping[Node, Stated | None], nets: Nets
     ) -> list[tuple[str, Given]]:
         """The instances to which a system's connector leads, each with the value under its own name for it.
 
         Notes a value that no instance takes.
         """
         whole = ".".join((*path, given.name))
-        node = next((each for each in _nodes(whole) if each in connectors), None)
-        takers = nets.reached(node) if node else []
+        node = next((each for each in _nodes(whole) if each in passing), None)
+        inside = passing[node] if node else None
+        takers = nets.reached(node, inside or given.unit) if node else []
         if not takers:
             reason = "there is no such component" if node is None else "no free input takes it"
             self.notes.append(f"{whole} of the package is ignored: {reason}")
-        elif node and not given.unit and (unit := connectors[node]):
-            given = replace(given, unit=unit, definition=self.units.get(unit))
-        return [(name, replace(given, name=variable)) for name, variable in takers]
+            return []
+        entered = conversion(whole, given.unit, "its connector", inside).then(given.transformation)
+        found = []
+        for taken in takers:
+            name, variable = nets.variable(taken.node)
+            made = entered.then(taken.conversion)
+            found.append((name, replace(given, name=variable, unit=taken.unit, transformation=made)))
+        return found
 
     def _instance(self, name: str, element: Element, stated: Any) -> Instance:
         """An instance; `stated` are units."""
@@ -152,7 +172,7 @@ class _Reader:
 
     def _set(self, instance: Instance, values: Iterable[Given], ours: bool) -> None:
         """Give an instance its values; `ours` says whether we made the package."""
-        self.notes += filter(None, [apply(instance, given) for given in values])
+        self.notes += filter(None, [apply(instance, given, self.unitless) for given in values])
         if instance.fmu.ours and not ours:  # what was meant for another master: ours goes by dependencies
             instance.values.pop(AT_STEP_END, None)
         instance.settle()
@@ -160,12 +180,11 @@ class _Reader:
     def _with_units(self, fmu: Fmu, element: Element, name: str) -> Fmu:
         """The units that connectors state, where the FMU itself states none."""
         ports = dict(fmu.ports)
-        for connector in element.iterfind(f"{full('ssd:Connectors')}/{full('ssd:Connector')}"):
-            unit = _unit(connector)
+        for connector in connectors(element):
+            unit = stated_by(connector, self.units)
             port = ports.get(fmu.name_of(required(connector, "name")))
             if unit and port is not None and port.kind == "Real":
-                where = f"{name}.{port.name}"
-                ports[port.name] = port.with_unit(unit, self.units.get(unit), where)
+                ports[port.name] = port.with_unit(unit.name, unit.definition, f"{name}.{port.name}")
         return replace(fmu, ports=ports)
 
     # ---- the rest
@@ -215,28 +234,6 @@ def _annotation(parent: Element, kind: str, content: str) -> Element | None:
     return None
 
 
-def _systems(system: Element, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Element]]:
-    """A system and the systems in it, each with the names that lead to it; the outer ones first."""
-    yield path, system
-    for element in system.iterfind(f"{full('ssd:Elements')}/{full('ssd:System')}"):
-        yield from _systems(element, (*path, required(element, "name")))
-
-
-def _unit(connector: Element) -> str:
-    """The unit that a connector states, or an empty text."""
-    real = connector.find(full("ssc:Real"))
-    return "" if real is None else real.get("unit", "")
-
-
-def _system_connectors(system: Element) -> dict[Node, str]:
-    """The connectors of a system and of the systems in it, with the units that they state."""
-    return {
-        (path, required(each, "name")): _unit(each)
-        for path, element in _systems(system)
-        for each in element.iterfind(f"{full('ssd:Connectors')}/{full('ssd:Connector')}")
-    }
-
-
 def _nodes(name: str) -> Iterator[Node]:
     """The connectors of systems that a dotted name may mean."""
     parts = name.split(".")
@@ -258,9 +255,9 @@ def _components(system: Element, path: tuple[str, ...] = ()) -> Iterator[_Found]
             yield _Found(here, element)
         elif element.tag == full("ssd:System"):
             yield from _components(element, here)
-        else:
+        elif element.tag != full("ssd:SignalDictionaryReference"):
             kind = element.tag.rpartition("}")[2]
-            raise LoomfmuError(f"{name} is a {kind}: only FMUs and systems are supported")
+            raise LoomfmuError(f"{name} is a {kind}: only FMUs, systems and dictionaries are supported")
 
 
 def _names(found: list[_Found]) -> dict[str, _Found]:
@@ -273,6 +270,7 @@ def _names(found: list[_Found]) -> dict[str, _Found]:
 def _stated(names: Iterable[str], text: dict[str, Any], overrides: dict[str, Any]) -> dict[str, Any]:
     """The units that the text of our scene states for each instance, and those that are set."""
     tables = {name: {"units": text.get(name, {}).get("units", {})} for name in names}
+    state_units(tables, text.get("units", {}))
     for key in overrides:
         if unit_of(key.partition(".")[2]):
             override(tables, key, overrides)

@@ -6,23 +6,37 @@ from xml.etree.ElementTree import Element
 
 from ... import units
 from ...errors import LoomfmuError, shown
+from ..importing.conversions import SAME, Linear, Stated, stated
 from ..importing.fmus import Port
-from ..importing.ports import Definition, own_definition, own_name
 from ..scenes.instances import Instance
-from .xml import full, read_units, required
+from .xml import full, read_units, required, suppressed, transformed
 
 Read = Callable[[str], Element]  # the root of an XML file in the package
 
 
 @dataclass(frozen=True)
 class Given:
-    """A value as a parameter set has it."""
+    """A value as a parameter set has it, and what its mapping makes of it after its unit was converted."""
 
     name: str
     kind: str  # Real, Integer, Boolean, Enumeration, String, Binary
     text: str
-    unit: str
-    definition: Definition | None
+    unit: Stated | None
+    transformation: Linear = SAME
+
+    def number(self, unit: Stated | None, where: str) -> float:
+        """Return its number in a unit, or as it stands if there is none. Raises LoomfmuError."""
+        try:
+            value = float(self.text)
+        except ValueError:
+            raise LoomfmuError(f"{where} = {shown(self.text)} is not a number") from None
+        if self.unit and unit:
+            try:
+                value = self.unit.conversion(unit)(value)
+            except ValueError:
+                own = f"{self.text} {self.unit.name}"
+                raise LoomfmuError(f"{where} = {own}, which does not fit {units.fitted(unit.name)}") from None
+        return self.transformation(value)
 
 
 def bound(element: Element, read: Read) -> Iterator[Given]:
@@ -35,8 +49,10 @@ def bound(element: Element, read: Read) -> Iterator[Given]:
         prefix = binding.get("prefix", "")
         for given in _values(parameters):
             name = prefix + given.name
-            for target in targets.get(name, [] if targets else [name]):
-                yield replace(given, name=target)
+            if not targets:
+                yield replace(given, name=name)
+            for target, made, kept in targets.get(name, ()):
+                yield replace(given, name=target, transformation=made, unit=None if kept else given.unit)
 
 
 def _values(parameters: Element) -> Iterator[Given]:
@@ -46,34 +62,41 @@ def _values(parameters: Element) -> Iterator[Given]:
             kind = value.tag.rpartition("}")[2]
             if kind != "Annotations":
                 unit = value.get("unit", "")
-                text = required(value, "value")
-                yield Given(required(parameter, "name"), kind, text, unit, definitions.get(unit))
+                text, said = required(value, "value"), stated(unit, definitions.get(unit))
+                yield Given(required(parameter, "name"), kind, text, said)
 
 
-def _mapping(binding: Element, read: Read) -> dict[str, list[str]]:
-    """Return the variables that each name of a set stands for; nothing if names stand for themselves."""
+def _mapping(binding: Element, read: Read) -> dict[str, list[tuple[str, Linear, bool]]]:
+    """Return the variables that each name of a set stands for; nothing if names stand for themselves.
+
+    Each comes with what is made of the value, and with whether its number stays in its own unit.
+    """
     place = binding.find(full("ssd:ParameterMapping"))
     if place is None:
         return {}
     source = place.get("source")
     mapping = place.find(full("ssm:ParameterMapping")) if source is None else read(source)
-    targets: dict[str, list[str]] = {}
+    targets: dict[str, list[tuple[str, Linear, bool]]] = {}
     for entry in mapping.iterfind(full("ssm:MappingEntry")) if mapping is not None else ():
-        if any(child.tag.endswith("Transformation") for child in entry):
-            raise LoomfmuError(
-                f"the mapping of {required(entry, 'source')} transforms its value;"
-                " transformations are not supported"
-            )
-        targets.setdefault(required(entry, "source"), []).append(required(entry, "target"))
+        name = required(entry, "source")
+        made = transformed(entry, f"the mapping of {name}")
+        targets.setdefault(name, []).append((required(entry, "target"), made, suppressed(entry)))
     return targets
 
 
-def apply(instance: Instance, given: Given) -> str:
+def apply(instance: Instance, given: Given, unitless: list[str]) -> str:
     """Set a value of an instance, or return why it is ignored, as the standard has it for unknown names.
 
-    Raises LoomfmuError for a value that the variable cannot have.
+    Values with a unit for a variable without one are added to `unitless`. Raises LoomfmuError for a value
+    that the variable cannot have.
     """
     where = f"{instance.name}.{given.name}"
+    if array := instance.fmu.elements(given.name):
+        texts = given.text.split()
+        if len(texts) != len(array):
+            raise LoomfmuError(f"{where} has {len(array)} elements, not {len(texts)}")
+        values = [replace(given, name=port.own, text=text) for port, text in zip(array, texts, strict=True)]
+        return next(filter(None, [apply(instance, each, unitless) for each in values]), "")
     port = instance.fmu.ports.get(instance.fmu.name_of(given.name))
     if port is None or given.kind in ("String", "Binary"):
         text = given.kind in ("String", "Binary")
@@ -82,33 +105,19 @@ def apply(instance: Instance, given: Given) -> str:
     if port.causality not in ("parameter", "input"):
         return f"{where} of the package is ignored: it is neither a parameter nor an input"
     instance.values[port.name] = port.value(_value(port, given, where), where)
+    if given.unit and given.unit.name != "1" and port.kind == "Real" and port.stated is None:
+        unitless.append(f"{instance.name}.{port.name} in {given.unit.name}")
     return ""
 
 
 def _value(port: Port, given: Given, where: str) -> float | bool | str:
     """A value in the unit of its variable."""
+    if given.transformation != SAME and port.kind != "Real":
+        raise LoomfmuError(f"{where}: a value of type {port.kind} cannot be transformed")
     if given.kind == "Boolean":
         if given.text not in ("true", "false", "1", "0"):
             raise LoomfmuError(f"{where} = {shown(given.text)} must be true or false")
         return given.text in ("true", "1")
-    if given.kind in ("Enumeration", "Integer"):
+    if given.kind in ("Enumeration", "Integer") and given.transformation == SAME:
         return given.text
-    try:
-        value = float(given.text)
-    except ValueError:
-        raise LoomfmuError(f"{where} = {shown(given.text)} is not a number") from None
-    name = own_name(given.unit, given.definition) or given.unit
-    if not given.unit or (port.has_unit and name == port.unit):
-        return value
-    if not port.has_unit:
-        if name == "1":
-            return value
-        hint = f"--set {where.partition('.')[0]}.units.{port.name}=..."
-        raise LoomfmuError(
-            f"{where} = {given.text} {given.unit}, but the variable has no unit; state it: {hint}"
-        )
-    known = own_definition(name) if name in units.UNITS else None
-    here, there = given.definition or known, port.definition
-    if here and there and here.exponents == there.exponents and here.offset == there.offset == 0.0:
-        return value * here.factor / there.factor
-    raise LoomfmuError(f"{where} = {given.text} {given.unit}, which does not fit {units.fitted(port.unit)}")
+    return given.number(port.stated, where)

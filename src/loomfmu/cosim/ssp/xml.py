@@ -6,11 +6,12 @@ from xml.etree.ElementTree import Element, SubElement
 
 from ...errors import LoomfmuError, shown
 from ...fmi.description.parameter_sets import SSC, SSV
-from ..importing.ports import BASES, Definition
+from ..importing.conversions import BASES, SAME, Definition, Linear
 
 SSD_FILE = "SystemStructure.ssd"
 PARAMETER_SET = "application/x-ssp-parameter-set"
 FMU = "application/x-fmu-sharedlibrary"
+SSP = "application/x-ssp-package"
 OSP = "com.opensimulationplatform"  # annotation of the Open Simulation Platform: the step
 OMS = "org.openmodelica"  # annotation of OMSimulator: its master and its step
 OURS = "org.pypi.loomfmu"  # our own annotation: the text of the scene
@@ -18,6 +19,7 @@ NAMESPACES = {
     "ssd": "http://ssp-standard.org/SSP1/SystemStructureDescription",
     "ssc": SSC,
     "ssv": SSV,
+    "ssb": "http://ssp-standard.org/SSP1/SystemStructureSignalDictionary",
     "ssm": "http://ssp-standard.org/SSP1/SystemStructureParameterMapping",
     "osp": "http://opensimulationplatform.com/SSP/OSPAnnotations",
     "oms": "https://raw.githubusercontent.com/OpenModelica/OMSimulator/master/schema/oms.xsd",
@@ -69,6 +71,22 @@ def read_units(sections: Iterable[Element]) -> dict[str, Definition]:
                     exponents, real(base, "factor", 1.0), real(base, "offset", 0.0)
                 )
     return found
+
+
+def transformed(element: Element, where: str) -> Linear:
+    """The transformation of a connection or of a mapping. Raises LoomfmuError for one of another kind."""
+    for child in element:
+        if child.tag == full("ssc:LinearTransformation"):
+            return Linear(real(child, "factor", 1.0), real(child, "offset", 0.0))
+        if child.tag.endswith("Transformation"):
+            kind = child.tag.rpartition("}")[2]
+            raise LoomfmuError(f"{where}: {kind} is not supported, only LinearTransformation is")
+    return SAME
+
+
+def suppressed(element: Element) -> bool:
+    """Return whether a connection or a mapping hands values over without converting units."""
+    return element.get("suppressUnitConversion") in ("true", "1")
 
 
 def required(element: Element, attribute: str) -> str:

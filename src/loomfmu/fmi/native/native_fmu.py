@@ -68,7 +68,7 @@ COMMAND = f"cc -shared -fPIC -std=c99 {OPTIONS} -o {{name}}.so fmi{{fmi}}.c -lm"
 BUILD_DESCRIPTION = f"""<?xml version="1.0" encoding="UTF-8"?>
 <fmiBuildDescription fmiVersion="3.0">
   <BuildConfiguration modelIdentifier="{{name}}">
-    <SourceFileSet language="C99" compilerOptions="{OPTIONS}">
+    <SourceFileSet language="C99" compiler="cc" compilerOptions="{OPTIONS}">
       <SourceFile name="fmi{{fmi}}.c"/>
     </SourceFileSet>
     <Library name="m"/>

@@ -16,7 +16,7 @@
 
 #include "tangents.h"
 
-enum { VALUES, STEP, SET_3, GET_3, STEP_3 };   /* what a call does: FMI 2.0, then FMI 3.0 */
+enum { VALUES, STEP, SET_3, GET_3, STEP_3, CONVERT }; /* what a call does: FMI 2.0, FMI 3.0, on a wire */
 enum { OK = 0, WARNING = 1, DISCARD = 2 };     /* with the first two a run goes on */
 enum { REFUSED = 1000 };                       /* a value that does not fit is not handed over */
 enum { NOT_SETTLED = -1, NOT_SAVED = -2, NOT_RESTORED = -3 }; /* what else may end an iterated step */
@@ -48,7 +48,7 @@ struct call {
     void *values;     /* what the FMU reads or writes; the flags of an FMI 3.0 step */
     void *masters;    /* the master's memory, where its types are others */
     int64_t type;     /* the FMU's, where it is another one */
-    double low, high; /* what fits the other side */
+    double low, high; /* what fits the other side; the factor and the offset of a conversion */
     const volatile int64_t *logged; /* warnings of the instance so far */
     struct silent *silent;
 };
@@ -164,6 +164,11 @@ static int perform(const struct call *call, double start, double size)
         return ((step_function)call->function)(call->instance, start, size, 1);
     if (call->kind == STEP_3)
         return step_3(call, start, size);
+    if (call->kind == CONVERT) {
+        double scaled = call->low * *(const double *)call->values;
+        *(double *)call->masters = scaled + call->high;
+        return OK;
+    }
     if (call->kind == VALUES)
         return ((values_function)call->function)(call->instance, call->references, call->count, call->values);
     if (call->masters && call->kind == SET_3 && !moved(call))

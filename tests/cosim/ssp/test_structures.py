@@ -1,0 +1,171 @@
+"""What systems are made of beside FMUs: packages in packages, signal dictionaries, arrays of SSP 2.0."""
+
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+from foreign_motors import ARRAYS, motor2, motor3
+
+from loomfmu import LoomfmuError
+from loomfmu.cosim.run import Result, run
+from loomfmu.cosim.ssp.xml import NAMESPACES, SSP
+
+SPACES = " ".join(f'xmlns:{key}="{NAMESPACES[key]}"' for key in ("ssd", "ssc", "ssv", "ssb"))
+MOTOR = '<ssd:Component name="{}" source="resources/Motor.fmu"/>'
+RPM = '<ssc:Unit name="rpm"><ssc:BaseUnit rad="1" s="-1" factor="0.10471975511965977"/></ssc:Unit>'
+
+
+def packed(path: Path, system: str, files: dict[str, bytes], units: str = RPM) -> Path:
+    """A package of a system and files."""
+    with zipfile.ZipFile(path, "w") as archive:
+        text = (
+            f'<ssd:SystemStructureDescription version="2.0" name="n" {SPACES}><ssd:System name="s">{system}'
+        )
+        archive.writestr(
+            "SystemStructure.ssd",
+            f"{text}</ssd:System><ssd:Units>{units}</ssd:Units></ssd:SystemStructureDescription>",
+        )
+        for name, content in files.items():
+            archive.writestr(f"resources/{name}", content)
+    return path
+
+
+def ran(path: Path) -> Result:
+    return run(path, set={"duration": "20 ms", "step": "1 ms"}, output=path.with_suffix(".h5"))
+
+
+def values(**given: str) -> str:
+    """A binding with values."""
+    text = "".join(
+        f'<ssv:Parameter name="{name.replace("__", ".")}"><ssv:{each}/></ssv:Parameter>'
+        for name, each in given.items()
+    )
+    return (
+        "<ssd:ParameterBindings><ssd:ParameterBinding><ssd:ParameterValues>"
+        f'<ssv:ParameterSet version="2.0" name="p"><ssv:Parameters>{text}</ssv:Parameters></ssv:ParameterSet>'
+        "</ssd:ParameterValues></ssd:ParameterBinding></ssd:ParameterBindings>"
+    )
+
+
+def connection(start: str, end: str) -> str:
+    ends = [
+        f'{which}Element="{owner}" {which}Connector="{name}"'
+        for which, (owner, _, name) in (("start", start.partition(".")), ("end", end.partition(".")))
+    ]
+    return f"<ssd:Connection {' '.join(ends)}/>"
+
+
+def in_system(elements: str, *connections: str, before: str = "", after: str = "") -> str:
+    """The content of a system."""
+    wires = f"<ssd:Connections>{''.join(connections)}</ssd:Connections>" if connections else ""
+    return f"{before}<ssd:Elements>{elements}</ssd:Elements>{wires}{after}"
+
+
+def connectors(**units: str) -> str:
+    listed = (
+        f'<ssd:Connector name="{name}" kind="{kind}">'
+        + (f'<ssc:Float64 unit="{unit}"/>' if unit else "")
+        + "</ssd:Connector>"
+        for name, (kind, _, unit) in ((name, each.partition(" ")) for name, each in units.items())
+    )
+    return f"<ssd:Connectors>{''.join(listed)}</ssd:Connectors>"
+
+
+def packages(tmp_path: Path, units: str = RPM, source: str = "in.ssp") -> Path:
+    """Two of a package with a motor, whose speed in rev/min is an output; the first drives the second."""
+    motor = {"Motor.fmu": motor2(tmp_path).read_bytes()}
+    own = values(m__J='Real value="2"', m__tau_stall='Real value="90"')
+    ends = connectors(speed="output rpm", load="input N.m") + own
+    wires = [
+        '<ssd:Connection startElement="m" startConnector="flange.w" endConnector="speed"/>',
+        '<ssd:Connection startConnector="load" endElement="m" endConnector="load.tau"/>',
+    ]
+    inner = packed(tmp_path / "in.ssp", in_system(MOTOR.format("m"), *wires, before=ends), motor)
+    other = f'<ssd:Component name="{{}}" type="{SSP}" source="resources/{source}">{{}}</ssd:Component>'
+    both = other.format("one", values(m__J='Real value="3"')) + other.format(
+        "two", values(load='Real value="5"')
+    )
+    return packed(tmp_path / "out.ssp", in_system(both), {"in.ssp": inner.read_bytes()} | motor, units)
+
+
+def test_a_package_in_a_package_is_a_system_of_it(tmp_path: Path) -> None:
+    result = ran(packages(tmp_path))
+    one, two = (result.scene.instances[f"{name}_m"].values for name in ("one", "two"))
+    assert one == {"J": 3.0, "tau_stall": 90.0} and two == {"J": 2.0, "tau_stall": 90.0, "load_tau": 5.0}
+    assert set(result.scene.instances) == {"one_m", "two_m"} and not result.warnings
+    assert np.all(np.diff(result.trace["one_m.flange_w"]) > 0.0)
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({"units": RPM.replace("0.1047", "0.2")}, "resources/in.ssp defines the unit 'rpm' in another way"),
+        ({"source": "none.ssp"}, "resources/none.ssp is not in the package"),
+        ({"source": "Motor.fmu"}, "SystemStructure.ssd is not in the package"),
+    ],
+)
+def test_a_package_that_does_not_fit_is_refused(tmp_path: Path, changed: dict[str, str], said: str) -> None:
+    with pytest.raises(LoomfmuError, match=said):
+        ran(packages(tmp_path, **changed))
+
+
+BUS = '<ssd:SignalDictionaryReference name="{}" dictionary="bus">{}</ssd:SignalDictionaryReference>'
+ENTRIES = (
+    f'<ssb:SignalDictionary version="2.0" {SPACES}><ssb:DictionaryEntry name="w"><ssc:Real unit="rpm"/>'
+    f"</ssb:DictionaryEntry><ssb:Units>{RPM}</ssb:Units></ssb:SignalDictionary>"
+)
+
+
+@pytest.mark.parametrize("inline", [True, False])
+def test_a_signal_dictionary_joins_what_is_connected_to_an_entry_of_it(tmp_path: Path, inline: bool) -> None:
+    reference = connectors(w="inout")
+    below = in_system(BUS.format("there", reference) + MOTOR.format("b"), connection("there.w", "b.load.tau"))
+    below = below.replace("<ssd:Connection ", '<ssd:Connection suppressUnitConversion="true" ')
+    content = ENTRIES if inline else ""
+    place = "" if inline else 'source="resources/bus.ssb"'
+    system = in_system(
+        BUS.format("here", reference) + MOTOR.format("a") + f'<ssd:System name="below">{below}</ssd:System>',
+        connection("a.flange.w", "here.w"),
+        after="<ssd:SignalDictionaries>"
+        f'<ssd:SignalDictionary name="bus" {place}>{content}</ssd:SignalDictionary></ssd:SignalDictionaries>',
+    )
+    files = {"Motor.fmu": motor2(tmp_path).read_bytes(), "bus.ssb": ENTRIES.encode()}
+    (wire,) = ran(packed(tmp_path / "bus.ssp", system, files)).scene.wires
+    assert str(wire) == "a.flange_w -> below_b.load_tau"  # rad/s become rev/min in the dictionary
+    assert wire.conversion.factor == pytest.approx(30.0 / np.pi, rel=1e-12)
+    wrong = system.replace('name="w" kind="inout"', 'name="v" kind="inout"').replace(
+        'Connector="w"', 'Connector="v"'
+    )
+    with pytest.raises(LoomfmuError, match="here: bus has no entry 'v'"):
+        ran(packed(tmp_path / "wrong.ssp", wrong, files))
+
+
+def test_an_input_that_is_connected_to_another_one_takes_the_same_value(tmp_path: Path) -> None:
+    wires = connection("a.flange.w", "b.load.tau"), connection("b.load.tau", "c.load.tau")
+    wires = tuple(
+        each.replace("<ssd:Connection ", '<ssd:Connection suppressUnitConversion="true" ') for each in wires
+    )
+    system = in_system("".join(map(MOTOR.format, "abc")), *wires)
+    found = ran(packed(tmp_path / "a.ssp", system, {"Motor.fmu": motor2(tmp_path).read_bytes()})).scene.wires
+    assert [str(each) for each in found] == [f"a.flange_w -> {name}.load_tau" for name in "bc"]
+
+
+def test_arrays_are_set_and_connected(tmp_path: Path) -> None:
+    motor3(tmp_path, description=ARRAYS)
+    one = MOTOR.replace("/>", ">{}</ssd:Component>").format("one", values(u='Float64 value="1 2 3 4"'))
+    system = in_system(one + MOTOR.format("two"), connection("one.y", "two.u"))
+    path = packed(tmp_path / "a.ssp", system, {"Motor.fmu": (tmp_path / "Motor3.fmu").read_bytes()})
+    result = ran(path)
+    assert result.scene.instances["one"].values == {
+        f"u_{r}_{c}": 2.0 * r + c - 2.0 for r in (1, 2) for c in (1, 2)
+    }
+    assert len(result.scene.wires) == 4
+    with pytest.raises(LoomfmuError, match=r"one\.u has 4 elements, not 3"):
+        ran(
+            packed(
+                path,
+                system.replace("1 2 3 4", "1 2 3"),
+                {"Motor.fmu": (tmp_path / "Motor3.fmu").read_bytes()},
+            )
+        )
