@@ -67,7 +67,10 @@ def test_what_depends_on_time_cannot_be_proven(loom: Scene, text: str, why: str)
 @pytest.mark.parametrize(
     ("asked", "message"),
     [
-        ({"over": ["shaft.speed=640rpm..300rpm"]}, "shaft.speed: the range from 640 rev/min to 300 rev/min is empty"),
+        (
+            {"over": ["shaft.speed=640rpm..300rpm"]},
+            "shaft.speed: the range from 640 rev/min to 300 rev/min is empty",
+        ),
         ({"over": ["heald_1.pattern_length=2..4"]}, "is not a real number"),
         ({"claims": ["margins"]}, "the scene has no claim"),
         ({"over": ["belt.head_mass=1g..2g", "belt.head_mass=2g..3g"]}, "both set"),

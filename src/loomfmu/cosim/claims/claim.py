@@ -6,10 +6,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, fields
 from typing import ClassVar, NamedTuple, dataclass_transform
 
-from ...errors import LoomfmuError
 from ...traces import Signals, Verdict
 from .arguments import Argument, Name, argument, argument_of
-from .conditions import Condition
+from .conditions import Condition, Unprovable
 from .judging import Form, Question, run_of
 from .movers import Wired
 
@@ -85,8 +84,8 @@ class Claim(ABC):
         """Return the rule by which it is judged, with the signals and numbers that this takes of a run."""
 
     def conditions(self, run: Wired) -> tuple[Condition, ...]:
-        """Return what must be so at every shaft angle. Raises LoomfmuError where the run so far matters."""
-        raise LoomfmuError("what it judges depends on the run so far, not on the shaft angle alone")
+        """Return what must be so at every shaft angle. Raises Unprovable where more than that matters."""
+        raise Unprovable("what it judges depends on the run so far, not on the shaft angle alone")
 
     def form(self, text: str, signal: str) -> Form:
         """Return a verdict's form with this text on a signal, in the claim's own unit."""

@@ -14,6 +14,10 @@ from .arguments import Window
 from .movers import Wired
 
 
+class Unprovable(LoomfmuError):
+    """A claim that depends on more than the present shaft angle, or on equations that are not known."""
+
+
 @dataclass(frozen=True)
 class Linear:
     """A sum of shares of signals and parameters, and a constant: what must not be negative, in SI."""
@@ -79,19 +83,19 @@ def above(signal: str, bound: float | str, share: float = 1.0, window: Window | 
 def present(signal: str, run: Wired, sense: int) -> str:
     """Return the signal of which this one holds the lowest values, or the highest ones with -1; or itself.
 
-    Raises LoomfmuError for another signal with a memory, and for a truth value.
+    Raises Unprovable for another signal with a memory, and for a truth value.
     """
     name, _, variable = signal.rpartition(".")
     kind = run.fmus.get(name, "")
     declared = {each.name: each for each in variables_of(COMPONENTS[kind])} if kind in COMPONENTS else {}
     if variable not in declared:
-        raise LoomfmuError(f"the equations of {signal} are not known")
+        raise Unprovable(f"the equations of {signal} are not known")
     found = declared[variable]
     base = found.lowest_of if sense > 0 else found.highest_of
     if base and found.type is float:
         return f"{name}.{base}"
     if found.one_way and found.causality == "output" and found.variability != "fixed" and found.depends != ():
-        raise LoomfmuError(f"{signal} depends on the run so far")
+        raise Unprovable(f"{signal} depends on the run so far")
     return signal
 
 

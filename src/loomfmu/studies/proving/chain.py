@@ -11,12 +11,12 @@ import numpy as np
 
 from ...components import COMPONENTS
 from ...components.shaft_driven import FOLLOWING, ShaftDriven
+from ...cosim.claims.conditions import Unprovable
 from ...cosim.planning.pruning import prune
 from ...cosim.scenes.graph import step_order
 from ...cosim.scenes.instances import Instance
 from ...cosim.scenes.scene import Scene
 from ...declaring.variables import MOTION, TIME, Component, variables_of
-from ...errors import LoomfmuError
 from ...fmi.native.slicing import settings_of
 from .enclosed import Enclosed
 from .spans import Floats, both, constant, minus, plus, times
@@ -91,7 +91,7 @@ class _Placed:
 class Chain:
     """The mechanisms that give some signals. `sides` are the parameters that vary, by instance and variable.
 
-    Raises LoomfmuError for what has a memory, a loop, a table of inputs or a shaft of changing speed.
+    Raises Unprovable for what has a memory, a loop, a table of inputs or a shaft of changing speed.
     """
 
     def __init__(self, scene: Scene, signals: Sequence[str], sides: Mapping[tuple[str, str], int]):
@@ -99,10 +99,10 @@ class Chain:
         self._scene, self._sides = scene, {**sides, (SHAFT, START): 0}
         order, lagged = step_order(needed.scene.instances, needed.scene.wires)
         if lagged:
-            raise LoomfmuError(f"{lagged[0]} closes a loop")
+            raise Unprovable(f"{lagged[0]} closes a loop")
         if needed.scene.drives:
             drive = needed.scene.drives[0]
-            raise LoomfmuError(f"{drive.instance}.{drive.variable} follows a table of inputs")
+            raise Unprovable(f"{drive.instance}.{drive.variable} follows a table of inputs")
         read = {wire.source for wire in needed.scene.wires} | {tuple(each.split(".", 1)) for each in signals}
         self._placed = [
             self._place(
@@ -116,7 +116,7 @@ class Chain:
         variables = {each.name: each for each in variables_of(component)}
         wires = {w.sink[1]: ".".join(w.source) for w in scene.wires if w.sink[0] == instance.name}
         if issubclass(component, ShaftDriven) and not instance.start(FOLLOWING):
-            raise LoomfmuError(f"{instance.name} does not follow the shaft")
+            raise Unprovable(f"{instance.name} does not follow the shaft")
         values = {
             name: float(instance.start(name) or 0.0)
             for name, each in variables.items()
@@ -170,17 +170,15 @@ def _is_output(scene: Scene, name: str) -> bool:
 
 
 def _checked(instance: Instance) -> type[Component]:
-    """The component of an instance. Raises LoomfmuError where its outputs depend on more than the angle."""
+    """The component of an instance. Raises Unprovable where its outputs depend on more than the angle."""
     component = instance.fmu.component
     if component is None or not instance.fmu.built:
-        raise LoomfmuError(f"{instance.name} is another tool's FMU, whose equations are not known")
+        raise Unprovable(f"{instance.name} is another tool's FMU, whose equations are not known")
     if not COMPONENTS.owns(component):
-        raise LoomfmuError(
-            f"{instance.name} is a mechanism of your own, which is not known to have no memory"
-        )
+        raise Unprovable(f"{instance.name} is a mechanism of your own, which is not known to have no memory")
     if component.keeps == MOTION:
-        raise LoomfmuError(f"{instance.name} moves by its own inertia, so that its past matters")
+        raise Unprovable(f"{instance.name} moves by its own inertia, so that its past matters")
     for name in component.unsteady:
         if instance.start(name):
-            raise LoomfmuError(f"the speed of {instance.name} changes: {name} is not 0")
+            raise Unprovable(f"the speed of {instance.name} changes: {name} is not 0")
     return component

@@ -122,11 +122,12 @@ def _with_ways(functions: str, name: str, changes: Mapping[str, frozenset[str]])
                 own=f"struct {name} own = *self; " * method,
             )
         )
-    structs = re.findall(r"^struct .*\};$", functions, re.MULTILINE)
-    last = max((found.end() for found in re.finditer(r"^static .*\);$", functions, re.MULTILINE)), default=0)
-    head, rest = functions[:last], functions[last:]
-    first = head.index("static ")
-    return head[:first] + _joins(*structs) + head[first:] + "\n\n" + "\n".join(wrappers) + rest
+    structs = [found.span() for found in re.finditer(r"^struct .*\};$", functions, re.MULTILINE)]
+    prototyped = [found.end() for found in re.finditer(r"^static [^=\n]*\);$", functions, re.MULTILINE)]
+    first, last = (structs[-1][1] if structs else 0), max(prototyped, default=0)
+    joins = _joins(*(functions[start:end] for start, end in structs))
+    wrapped = "\n".join(wrappers)
+    return f"{functions[:first]}\n{joins}{functions[first:last]}\n\n{wrapped}{functions[last:]}"
 
 
 def _exact(functions: str) -> str:

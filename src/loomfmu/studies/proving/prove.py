@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import units
-from ...cosim.claims.conditions import Always, Condition, Linear, Spans, names_of
+from ...cosim.claims.conditions import Always, Condition, Linear, Spans, Unprovable, names_of
 from ...cosim.planning.requested import Requested
 from ...cosim.prepared import Prepared
 from ...cosim.reading import requested
@@ -141,7 +141,7 @@ class _Search:
             conditions = self._asked.claims[number].conditions(self._asked)
             chain = Chain(self._scene, names_of(conditions), self._targets)
             self._check_known(conditions, chain)
-        except LoomfmuError as error:
+        except Unprovable as error:
             return Proof(name, IMPOSSIBLE, str(error))
         witness = self._witness(number, self._runs)
         if witness is not None:
@@ -166,7 +166,7 @@ class _Search:
         numbers = chain.numbers(point)
         for name in names_of(conditions):
             if not np.isfinite(chain.number(name, numbers, point).values).any():
-                raise LoomfmuError(f"{name} is found by a search that cannot be enclosed")
+                raise Unprovable(f"{name} is found by a search that cannot be enclosed")
 
     # ---- covers
 
