@@ -31,6 +31,7 @@ FORMAT = "loomfmu proof 1"
 SHAFT, START = "shaft", "start_angle"
 FINER = 6  # bisections of a box that this arithmetic, which is wider, may need on top
 Box = tuple[Ends, ...]
+Numbers = dict[str, Interval]
 
 
 class Refused(LoomfmuError):
@@ -124,9 +125,10 @@ def _text(box: Box) -> str:
 def _holds(chain: "_Mechanisms", forms: Sequence[Linear], box: Box, finer: int) -> bool:
     """Return whether one of the forms is not negative all over a box, or over each half of it."""
     try:
-        found, middle = chain.numbers(box), chain.numbers(tuple((m, m) for m in _middle(box)))
-        if any(_lowest(form, chain, found, middle, box) >= 0.0 for form in forms):
-            return True
+        found, middle = chain.numbers(box)
+        for form in forms:
+            if _narrowed(chain.value(form, found), chain.value(form, middle), box).ends[0] >= 0.0:
+                return True
     except Unknown:
         pass
     side = max(range(len(box)), key=lambda each: (box[each][1] - box[each][0]) / max(1.0, abs(box[each][1])))
@@ -141,16 +143,14 @@ def _middle(box: Box) -> list[float]:
     return [min(max(0.5 * (low + high), low), high) for low, high in box]
 
 
-def _lowest(
-    form: Linear, chain: "_Mechanisms", found: dict[str, Interval], middle: dict[str, Interval], box: Box
-) -> float:
-    """The lowest value of a form: by its values, and from the middle of the box by its slopes."""
-    wide = chain.value(form, found)
-    about: Any = number(0.0) + Interval(chain.value(form, middle).ends, None)
+def _narrowed(wide: Interval, middle: Interval, box: Box) -> Interval:
+    """Return a number narrowed to what its slopes leave from its value in the middle of the box."""
+    about: Any = Interval(middle.ends, None)
     for slope, side, place in zip(wide.slopes or (), box, _middle(box), strict=False):
         about = about + Interval(slope, None) * (Interval(side, None) - place)
-    lowest: float = max(wide.ends[0], about.ends[0])
-    return lowest
+    if wide.slopes is not None:
+        wide.ends = max(wide.ends[0], about.ends[0]), min(wide.ends[1], about.ends[1])
+    return wide
 
 
 class _Mechanisms:
@@ -187,22 +187,28 @@ class _Mechanisms:
                 (name, instance, component, _module(component, wanted, instance), wanted, wires, warnings)
             )
 
-    def numbers(self, box: Box) -> dict[str, Interval]:
-        """Return all outputs over a box. Raises Unknown where too little is known of them."""
-        Interval.sides, found = len(box), dict[str, Interval]()
+    def numbers(self, box: Box) -> tuple[Numbers, Numbers]:
+        """Return all outputs over a box, and in its middle. Raises Unknown where too little is known."""
+        Interval.sides, point = len(box), tuple((m, m) for m in _middle(box))
+        found, middle = ({".".join(k): _side(n, b) for k, n in self._sides.items()} for b in (box, point))
         for name, instance, component, module, wanted, wires, warnings in self._parts:
-            given = {
+            start = {
                 each.name: each.type(instance.start(each.name) if each.settable else each.start)
                 for each in variables_of(component)
             }
-            given |= {variable: found[source] for variable, source in wires.items()}
-            given |= {key[1]: _side(place, box) for key, place in self._sides.items() if key[0] == name}
+            sides = {key[1]: ".".join(key) for key in self._sides if key[0] == name}
             time = number(0.0) if name == SHAFT else Interval(ALL, [ALL] * len(box))
-            results = joined(partial(_started, component, module, wanted, warnings))(given, time)
-            found |= {f"{name}.{variable}": each for variable, each in zip(wanted, results, strict=True)}
-        return found | {".".join(key): _side(place, box) for key, place in self._sides.items()}
+            place = joined(partial(_started, component, module, wanted, warnings))
+            wide, here = (
+                place(start | {variable: known[source] for variable, source in (wires | sides).items()}, time)
+                for known in (found, middle)
+            )
+            for variable, a, b in zip(wanted, wide, here, strict=True):
+                middle[f"{name}.{variable}"] = b
+                found[f"{name}.{variable}"] = _narrowed(a, b, box)
+        return found, middle
 
-    def value(self, form: Linear, found: dict[str, Interval]) -> Interval:
+    def value(self, form: Linear, found: Numbers) -> Interval:
         """Return a sum of signals and parameters."""
         total = number(form.constant)
         for share, name in form.terms:
