@@ -355,21 +355,17 @@ def test_the_slider_past_the_safe_speed_turns_the_verdicts(page: Any) -> None:
     until(page, lambda: page.inner_text(".outcome").endswith("All 6 claims hold"))
 
 
-def test_on_paper_the_drawings_stand_where_a_claim_of_this_run_fails(page: Any) -> None:
+def test_on_paper_the_drawings_are_those_of_the_cursor(page: Any) -> None:
     """Those out of sight, too: at 690 rev/min the belt buckles at 100 deg, which it does not at the start."""
     turned(page, 690.0)
-    page.emulate_media(media="print")
-    until(page, lambda: "100." in page.inner_text("#motion-place"))
-    place = page.evaluate("loomfmu.live.worst()")
-    assert page.evaluate("loomfmu.position") == place  # diagram and plots stand there, too
-    page.emulate_media(media="screen")
-    until(page, lambda: page.evaluate("loomfmu.position === loomfmu.first"))
+    place = page.evaluate("loomfmu.live.verdicts[0].place.position")
     page.evaluate(f"loomfmu.seek({place})")
     values = "Array.from(document.querySelectorAll('#motion [data-value]'), each => each.textContent)"
     page.locator("#motion").scroll_into_view_if_needed()
     seen = page.evaluate(values)
     page.evaluate("loomfmu.seek(loomfmu.first); scrollTo(0, 0)")
     page.wait_for_timeout(200)  # an observer says when they are out of sight
+    page.evaluate(f"loomfmu.seek({place})")
     page.emulate_media(media="print")
     until(page, lambda: page.evaluate(values) == seen)
 

@@ -174,7 +174,7 @@ def test_a_revolution_without_worst_values_says_where_they_are(
     assert {each.revolution for each in demo.verdicts} == {1, 3}
     page = opened(written(demo))
     text = page.locator("#diagram-straight .elsewhere")
-    assert text.is_hidden()
+    assert text.is_hidden()  # it opens at the worst claim
     page.evaluate("loomfmu.seek(1.5 * 2 * Math.PI)")
     assert text.is_visible() and text.text_content() == "worst values in revolutions 1 and 3"
 

@@ -80,6 +80,8 @@ def section(subject: Subject) -> Section | None:
         straight=[svg(each) for each in drawings],
         round=[svg(round_(occasions.rows, each, its)) for each, its in zip(drawn, marks, strict=True)],
         tables=[table(occasions.rows, each) for each in drawn],
+        first=revolution_of(subject.start, occasions.numbers),
+        shown=shown,
         numbers=[[n for n, place in shown.items() if place == k] for k in range(len(drawn))],
         legend=_legend(occasions.rows, None if subject.live else drawings),
         coarse=math.degrees(subject.gap) if subject.gap > COARSE else 0.0,
@@ -112,7 +114,7 @@ def write(
     if reason := _not_drawn(subject, occasions):
         raise LoomfmuError(f"{trace.given}: there is no timing diagram, as {reason}")
     numbers = occasions.numbers
-    number = _usual(trace, subject, numbers) if revolution is None else revolution
+    number = _usual(subject, numbers) if revolution is None else revolution
     if number not in numbers:
         raise LoomfmuError(f"revolution = {number} is outside [{numbers[0]}, {numbers[-1]}] of {trace.given}")
     its, marks = occasions.revolution(number), marks_in(trace.verdicts, number)
@@ -127,14 +129,16 @@ def write(
     return write_file(output, file(drawing, size, output.suffix, title), kind, [trace.path], overwrite)
 
 
-def _usual(trace: Trace, subject: Subject, numbers: range) -> int:
+def _usual(subject: Subject, numbers: range) -> int:
     """The revolution of the worst failure; the last whole one where all claims hold."""
-    failures = [each for each in trace.verdicts if not each and each.revolution in numbers]
-    if not failures:
+    if subject.worst is None or subject.worst:
         return max(numbers[0], int(subject.positions[-1] / TURN + 1e-9))
-    # one that fails comes before one that is undecided, one with a distance before one without
-    worst = min(failures, key=lambda each: (not each.decided, math.isnan(each.away), each.away))
-    return int(worst.revolution or numbers[0])
+    return revolution_of(subject.start, numbers)
+
+
+def revolution_of(position: float, numbers: range) -> int:
+    """Return the number of the revolution that a position is in, among those of a run."""
+    return min(max(int(position / TURN + 1e-9) + 1, numbers[0]), numbers[-1])
 
 
 def _not_drawn(subject: Subject, occasions: Occasions) -> str:

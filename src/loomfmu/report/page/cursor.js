@@ -10,7 +10,7 @@ const loomfmu = (() => {
   const slider = document.getElementById("cursor-slider"), place = document.getElementById("cursor-place");
   const button = document.getElementById("cursor-play");
   const listeners = [];
-  let position = first, playing = null;
+  let position = axis.start, playing = null;
 
   /* Index of the last of ascending values that is not above a value, and the share of the way to the next. */
   function locate(ascending, value) {

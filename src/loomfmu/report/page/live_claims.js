@@ -87,15 +87,6 @@ loomfmu.shownIn = ({ factor, unit }, value, digits = 7) =>
     return [{ value: bound * its.factor, text: `bound ${loomfmu.shownIn(its, bound)}`, holds }];
   });
 
-  /* Where the claim is that is nearest to its bound, or farthest beyond it; null where none is judged. */
-  loomfmu.live.worst = () => {
-    const [nearest] = (loomfmu.live.verdicts || [])
-      .filter(verdict => verdict.holds !== null && verdict.place)
-      .map(verdict => ({ verdict, away: verdict.distance / (Math.abs(verdict.bound) || 1) }))
-      .sort((one, other) => one.verdict.holds - other.verdict.holds || one.away - other.away);
-    return nearest ? nearest.verdict.place.position : null;
-  };
-
   function verdictOf(run, judge, claim) {
     const waiting = run ? claim.parts.filter(run.waits) : [];
     if (!run) return { holds: null, left: true, note: "these values cannot be run" };
