@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from browser import NARROW, until
+from browser import NARROW
 
 import loomfmu
 from loomfmu import report
