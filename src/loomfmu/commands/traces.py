@@ -179,8 +179,13 @@ def add_plot(commands: Any) -> None:
     command.add_argument(
         "--ylim",
         metavar="LOW..HIGH",
-        help="the range that is drawn, with its unit, such as 0..1 or 0mm..5mm",
+        help="the range that is drawn, with its unit, such as 0..1 or 0mm..5mm; by default around the bound",
     )
+    command.add_argument(
+        "--from", dest="start", metavar="X", help="where the axis begins: 90deg, or 20ms over time"
+    )
+    command.add_argument("--to", dest="end", metavar="X", help="where the axis ends")
+    command.add_argument("--revolution", type=int, metavar="N", help="the only one to draw, counted from 1")
     command.add_argument(
         "--output", metavar="FILE.png|svg|pdf", help="FILE_plot.png beside the trace by default"
     )
@@ -201,8 +206,8 @@ def plot(options: argparse.Namespace) -> int:
     signals = [name for name in options.names if name not in more]
     output = Path(options.output) if options.output else None
     traces = [Trace(path) for path in paths]
-    over, fold, force, ylim = options.over, options.fold, options.force, options.ylim
-    say(f"written: {pictures.plot(traces, signals, output, over, fold, force, ylim)}")
+    axis = {key: getattr(options, key) for key in ("over", "fold", "ylim", "start", "end", "revolution")}
+    say(f"written: {pictures.plot(traces, signals, output, overwrite=options.force, **axis)}")
     return 0
 
 
