@@ -386,9 +386,9 @@ def test_drawings_and_plots_follow_the_run(page: Any, fast: Trace) -> None:
     # interpolated between 41 shapes up to the steepest
     assert bent > 1.0 and np.max(bow[:, 1]) == pytest.approx(bent, rel=1e-2)
     assert np.sum(np.hypot(*np.diff(bow, axis=0).T)) == pytest.approx(free, rel=2e-3)
-    plot = page.locator("figure[data-name='belt.lowest_margin'] output")
+    plot = page.locator("figure[data-name='belt.margin'] output")
     plot.scroll_into_view_if_needed()
-    margin = f"{float(np.interp(place, fast.shaft_angle, fast['belt.lowest_margin'])):.3g}"
+    margin = f"{float(np.interp(place, fast.shaft_angle, fast['belt.margin'])):.3g}"
     until(page, lambda: plot.inner_text().startswith(margin))
     page.locator("#cursor-slider").press("End")
     assert page.inner_text("#cursor-place").startswith("rev. 3, 360.0°")
@@ -398,15 +398,17 @@ def test_what_is_out_of_sight_shows_the_same_place_and_run(page: Any, fast: Trac
     """A picture of the whole page, taken without scrolling: caption, drawings and plots agree."""
     travel = page.locator("#motion-drive-weft [data-value]").first
     place = page.locator("#motion-place")
-    assert (place.inner_text(), travel.inner_text()) == ("rev. 1, 0.0°, 0.00000 s", "0.0")
+    assert (
+        place.inner_text().startswith("rev. 1, 137.0°") and travel.inner_text() != "0.0"
+    )  # at the worst claim
     turned(page, 700.0)
     page.evaluate("loomfmu.seek(Math.PI)")
     innermost = 1000.0 * float(np.interp(math.pi, fast.shaft_angle, fast["weft.travel"]))
     assert place.inner_text().startswith("rev. 1, 180.0°")
     assert travel.inner_text() == f"{innermost:.1f}"
     values = page.locator("#plots figcaption output")
-    lowest = float(np.interp(math.pi, fast.shaft_angle, fast["belt.lowest_margin"]))
-    until(page, lambda: values.first.inner_text().startswith(f"{lowest:.4g}"[:6]))
+    margin = float(np.interp(math.pi, fast.shaft_angle, fast["belt.margin"]))
+    until(page, lambda: values.first.inner_text().startswith(f"{margin:.5g}"))
     until(page, lambda: all(NOT_THERE not in each for each in values.all_inner_texts()))
     assert page.evaluate("scrollY") == 0
 

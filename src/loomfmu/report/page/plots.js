@@ -245,7 +245,7 @@
       if (!along.length || x < along[0] - 1e-6 || x > along[along.length - 1] + 1e-6) return "–";
       const [index, share] = loomfmu.locate(along, x), next = Math.min(index + 1, values.length - 1);
       const [before, after] = [values[index], values[next]];
-      if (before === null || after === null) return "–";
+      if (before === null || after === null) return signal.free === null ? "–" : "no limit";
       let value = worst && !number ? worst.worst : signal.step ? (share >= 1 ? after : before) : before + share * (after - before);
       if (Math.abs(value) < 1e-12 * largest[number]) value = 0; // what rounding leaves of it
       return `${Number(value.toPrecision(5))}${signal.unit ? ` ${signal.unit}` : ""}`;
