@@ -3,7 +3,9 @@
 import json
 import math
 import re
+import shlex
 import sys
+import tomllib
 from base64 import b64decode
 from collections.abc import Callable
 from importlib.util import find_spec
@@ -351,7 +353,7 @@ def test_the_slider_past_the_safe_speed_turns_the_verdicts(page: Any) -> None:
     running(page)
     assert words()[:2] == ["FAILS", "FAILS"]
     assert page.inner_text(".outcome").endswith("2 of 6 claims fail")
-    page.locator("#live-knobs button").click()
+    page.locator("#live-knobs button[type=reset]").click()
     until(page, lambda: page.inner_text(".outcome").endswith("All 6 claims hold"))
 
 
@@ -368,6 +370,31 @@ def test_on_paper_the_drawings_are_those_of_the_cursor(page: Any) -> None:
     page.evaluate(f"loomfmu.seek({place})")
     page.emulate_media(media="print")
     until(page, lambda: page.evaluate(values) == seen)
+
+
+def test_an_address_carries_values_which_are_copied_as_command_and_scene(written: Path, opened: Open) -> None:
+    page = running(opened(written))
+    assert "#" not in page.url
+    turned(page, 700.0)
+    assert page.url.endswith("#shaft.speed=700")
+    page.goto(f"{written.as_uri()}#shaft.speed=690&dobby.law=harmonic_ends&belt.guide_clearance=99&x=1")
+    page.reload()
+    running(page)
+    until(page, lambda: page.inner_text(".outcome").endswith("fail"))
+    shown = page.evaluate(
+        "[...document.querySelectorAll('.knob :is(input[type=number], select)')].map(e => e.value)"
+    )
+    assert shown[:2] == ["690", "0.3"]  # what is outside its range is left as it is
+    copied = {}
+    for kind in ("command", "scene"):
+        page.locator(f"[data-copy={kind}]").click()
+        until(page, lambda: page.locator("#live-copied").inner_text() not in ("", *copied.values()))
+        copied[kind] = page.locator("#live-copied").inner_text()
+    command = shlex.split(copied["command"].removeprefix("copied:\n"))
+    assert command[:2] == ["loomfmu", "run"]
+    assert command[-4:] == ["--set", "shaft.speed=690 rev/min", "--set", "dobby.law=harmonic_ends"]
+    scene = tomllib.loads(copied["scene"].removeprefix("copied:\n"))
+    assert scene == {"shaft": {"speed": "690 rev/min"}, "dobby": {"law": "harmonic_ends"}}
 
 
 def test_drawings_and_plots_follow_the_run(page: Any, fast: Trace) -> None:

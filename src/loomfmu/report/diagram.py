@@ -25,6 +25,7 @@ MARKS = {
     "worst value of a claim that holds": "holds",
     "worst value of a claim that fails or is undecided": "fails",
 }
+MOST_NAMED = 9  # rings of the round diagram on a narrow screen
 MOST_DRAWN = 24  # revolutions that differ, in one report
 
 
@@ -82,6 +83,7 @@ def section(subject: Subject) -> Section | None:
         tables=[table(occasions.rows, each) for each in drawn],
         first=revolution_of(subject.start, occasions.numbers),
         shown=shown,
+        crowded=len(occasions.rows) > MOST_NAMED,
         numbers=[[n for n, place in shown.items() if place == k] for k in range(len(drawn))],
         legend=_legend(occasions.rows, None if subject.live else drawings),
         coarse=math.degrees(subject.gap) if subject.gap > COARSE else 0.0,
