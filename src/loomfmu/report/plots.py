@@ -94,7 +94,8 @@ def section(subject: Subject) -> Section | None:
     coarser = _points(subject, [name for name in names if name not in claimed])
     rows, signals = [], {}
     for name in names:
-        row, signals[name] = _signal(subject, name, verdicts, finer if name in claimed else coarser)
+        its = [each for each, curve in zip(verdicts, judged, strict=True) if name in (each.signal, curve)]
+        row, signals[name] = _signal(subject, name, its, finer if name in claimed else coarser)
         rows.append(row | {"chosen": name in claimed})
     names_of_curves = LIVE if subject.live else labels(subject.traces)
     along = [_along(subject, trace) for trace in subject.traces]
@@ -162,9 +163,7 @@ def _signal(
             "at": subject.position(each),
         }
         for each in verdicts
-        if name in (each.signal, curve_of(source, each.signal))
-        and each.unit == source.unit(name)
-        and math.isfinite(each.bound)
+        if each.unit == source.unit(name) and math.isfinite(each.bound)
     ]
     return row, {
         "unit": row["unit"],
