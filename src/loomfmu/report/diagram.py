@@ -53,11 +53,12 @@ def section(subject: Subject) -> Section | None:
     drawn: list[Revolution] = []
     marks: list[list[Mark]] = []
     shown: dict[int, int | None] = {}
+    first = revolution_of(subject.start, occasions.numbers)
     for revolution in occasions.revolutions():
         its = marks_in(subject.trace.verdicts, revolution.number)
         same = (k for k, other in enumerate(drawn) if revolution.same(other) and marks[k] == its)
         place = next(same, None)
-        if place is None and len(drawn) < MOST_DRAWN:
+        if place is None and (len(drawn) < MOST_DRAWN or revolution.number == first):
             place = len(drawn)
             drawn.append(revolution)
             marks.append(its)
@@ -81,7 +82,7 @@ def section(subject: Subject) -> Section | None:
         straight=[svg(each) for each in drawings],
         round=[svg(round_(occasions.rows, each, its)) for each, its in zip(drawn, marks, strict=True)],
         tables=[table(occasions.rows, each) for each in drawn],
-        first=revolution_of(subject.start, occasions.numbers),
+        first=first,
         shown=shown,
         crowded=len(occasions.rows) > MOST_NAMED,
         numbers=[[n for n, place in shown.items() if place == k] for k in range(len(drawn))],
