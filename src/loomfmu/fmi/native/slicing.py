@@ -156,7 +156,7 @@ def settings_of(variables: Iterable[Variable], start: Callable[[str], Any]) -> d
 def _statements(
     body: list[ast.stmt], parents: tuple[ast.stmt, ...]
 ) -> Iterator[tuple[tuple[ast.stmt, ...], ast.stmt]]:
-    """The statements of a body, those inside of others included, with all that they are in."""
+    """Yield the statements of a body, those inside of others included, with all that they are in."""
     for statement in body:
         yield parents, statement
         for name in ("body", "orelse"):
@@ -164,7 +164,7 @@ def _statements(
 
 
 def _places(function: str, node: ast.AST) -> Iterator[Place]:
-    """What a node names: a variable of the component, or one of its function."""
+    """Yield the places that a node names: of the component's variables, and of its function's."""
     if isinstance(node, ast.Attribute) and of_self(node):
         yield SELF, node.attr
     elif isinstance(node, ast.Name):

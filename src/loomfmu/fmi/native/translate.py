@@ -112,7 +112,7 @@ def translate(component: type[Component]) -> Translation:
 def translate_slice(
     component: type[Component], wanted: Iterable[str], settings: Mapping[str, Any]
 ) -> Written:
-    """What some variables of the component depend on with some settings, in C. Raises Untranslatable."""
+    """Return the C of all that some variables depend on with some settings. Raises Untranslatable."""
     with _one_at_a_time:
         tree = sliced(ast.parse(source.flatten(component)), ENTRIES, wanted, settings)
         return _written(component, tree, {}, PLAIN)

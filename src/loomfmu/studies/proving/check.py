@@ -258,7 +258,7 @@ class _Numbers(ast.NodeTransformer):
 
 
 def _module(component: Any, wanted: Sequence[str], instance: Instance) -> dict[str, Any]:
-    """What some outputs of a component depend on, as a module that computes with intervals."""
+    """Return a module that computes some outputs of a component with intervals."""
     settings = settings_of(variables_of(component), instance.start)
     tree = sliced(ast.parse(source.flatten(component)), ENTRIES, wanted, settings)
     constants = {name: number(getattr(math, name)) for name in ("pi", "inf", "e", "tau")}

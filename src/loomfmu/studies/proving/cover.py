@@ -15,7 +15,7 @@ DECIDED = -1  # in a tree: a box that is not bisected
 
 @dataclass(frozen=True)
 class Decision:
-    """Which boxes are `proven`, and how much each side of the others matters (boxes, sides)."""
+    """The boxes that are `proven`, and how much each side of the others matters (boxes, sides)."""
 
     proven: NDArray[np.bool_]
     weights: Floats

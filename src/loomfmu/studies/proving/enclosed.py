@@ -73,7 +73,7 @@ static void forget({0} &a)
 
 
 def program(component: type[Component], wanted: Sequence[str], settings: Mapping[str, Any]) -> str:
-    """What some outputs of the component depend on with some settings, in C++."""
+    """Return the C++ of all that some outputs depend on with some settings."""
     written, name = translate_slice(component, wanted, settings), component.__name__
     variables = variables_of(component)
     puts = [f"    case {len(variables)}: *time = value; break;"]
@@ -136,7 +136,7 @@ def _exact(functions: str) -> str:
 
 
 def _joins(*structs: str) -> str:
-    """What is done with the results of several ways, for each struct."""
+    """Return the functions that join the results of several ways, for each struct."""
     texts = []
     for name, members in (
         found for text in structs for found in re.findall(r"(struct \w+) \{ (.*?) ?\};", text)

@@ -22,7 +22,7 @@ def show(found: Proofs) -> None:
 
 
 def _how(proof: Proof) -> str:
-    """How a claim was proven or refuted, or why not."""
+    """Say by how many boxes a claim was proven, where it was refuted, or why it was not proven."""
     if proof.status == PROVEN:
         return f"by {proof.boxes} boxes"
     if proof.status == REFUTED:

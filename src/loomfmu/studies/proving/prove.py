@@ -54,7 +54,7 @@ class Proof:
 
 @dataclass(frozen=True)
 class Proofs:
-    """What was proven of a scene `over` a box; true if all claims are proven."""
+    """The proofs of a scene `over` a box; true if all claims are proven."""
 
     scene: Scene
     over: tuple[Span, ...]
@@ -236,7 +236,7 @@ def decide_always(chain: Chain, condition: Always, boxes: Floats) -> Decision:
 
 
 def _weights(slopes: Floats, boxes: Floats) -> Floats:
-    """How much each side matters: the change across it, or its width where slopes are not known."""
+    """Weigh the sides: by the change across each, or by its width where slopes are not known."""
     widths = boxes[..., 1] - boxes[..., 0]
     with np.errstate(invalid="ignore"):
         change: Floats = np.abs(slopes).max(axis=-1) * widths
@@ -278,7 +278,7 @@ def spans_last(chain: Chain, condition: Spans, start: float, turned: float, box:
 
 
 def _kinds(chain: Chain, form: Linear, edges: Floats, box: Floats) -> Floats:
-    """What a form does in each cell of angles, all over a box of parameters."""
+    """Say of each cell of angles how a form moves in it, all over a box of parameters."""
     boxes = np.empty((len(edges) - 1, 1 + len(box), 2))
     boxes[:, 0, 0], boxes[:, 0, 1] = edges[:-1], edges[1:]
     boxes[:, 1:] = box
