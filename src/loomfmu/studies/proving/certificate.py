@@ -50,4 +50,4 @@ def write(proofs: Proofs, path: Path, inputs: Sequence[Path] = (), overwrite: bo
 
 
 def _certifiable(proof: Proof) -> bool:
-    return all(isinstance(condition, Always) for condition, _covers in proof.covers)
+    return bool(proof.components) and all(isinstance(condition, Always) for condition, _ in proof.covers)

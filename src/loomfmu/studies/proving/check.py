@@ -88,6 +88,11 @@ class _Check:
 
     def _check(self, name: str, condition: Condition, covers: Sequence[Any], chain: "_Mechanisms") -> None:
         start = float(self._scene.instances[SHAFT].start(START) or 0.0)
+        place = self._sides.get((SHAFT, "speed"))
+        speed = float(self._scene.instances[SHAFT].start("speed") or 0.0)
+        slowest = speed if place is None else self._ends[place - 1][0]
+        if slowest <= 0.0 or self._scene.step is not None:
+            raise Refused("only forward runs by revolutions can be confirmed")
         last = start + 2.0 * math.pi * self._scene.periods
         if not isinstance(condition, Always):
             raise Refused(f"{name}: spans cannot be confirmed")

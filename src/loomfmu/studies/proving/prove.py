@@ -47,6 +47,7 @@ class Proof:
     witness: Mapping[str, str] = field(default_factory=dict)
     covers: tuple[tuple[Condition, tuple[Cover, ...]], ...] = field(default=(), repr=False)
     components: tuple[type[Component], ...] = field(default=(), repr=False)
+    """Those of a proof that a certificate can confirm: over shaft angles, not over time."""
 
     def __bool__(self) -> bool:
         return self.status == PROVEN
@@ -76,8 +77,8 @@ def prove(
 ) -> Proofs:
     """Prove claims of a scene for all shaft angles of its revolutions, and all values of a box.
 
-    Proven is what the equations of the mechanisms say, in real numbers. Claims on mechanisms with a memory,
-    with a table of inputs, or on a shaft of changing speed cannot be proven.
+    Proven is what the equations of the mechanisms say, in real numbers. Claims on mechanisms with a memory
+    cannot be proven.
 
     Args:
         scene, set: as for `run`
@@ -152,7 +153,7 @@ class _Search:
         boxes = sum(each.boxes for each in parts)
         left = [box for each in parts for box in each.open]
         if not left:
-            return Proof(name, PROVEN, "", 1.0, boxes, {}, covers, chain.components)
+            return Proof(name, PROVEN, "", 1.0, boxes, {}, covers, () if chain.timed else chain.components)
         places = (self._middle(box) for box in left[:: math.ceil(len(left) / LOOKED_AT)])
         witness = self._witness(number, map(self._run, places))
         if witness is not None:
@@ -161,29 +162,48 @@ class _Search:
 
     def _check_known(self, conditions: Sequence[Condition], chain: Chain) -> None:
         """Refuse equations of which nothing is known at a single point: no box is small enough for them."""
-        angle = np.float64(self._scene.instances[SHAFT].start(START)) + 0.4
-        point = np.repeat(np.array([angle, *self._box.mean(axis=1)])[None, :, None], 2, axis=2)
+        first, last = self._run_of(chain)
+        place = first + 0.0637 * (last - first)
+        point = np.repeat(np.array([place, *self._box.mean(axis=1)])[None, :, None], 2, axis=2)
         numbers = chain.numbers(point)
         for name in names_of(conditions):
             if not np.isfinite(chain.number(name, numbers, point).values).any():
                 raise Unprovable(f"{name} is found by a search that cannot be enclosed")
+        for each in conditions if chain.timed else ():
+            if isinstance(each, Spans) or each.window or each.angles:
+                raise Unprovable("the speed changes, or a value follows a table, and the claim names angles")
 
     # ---- covers
 
-    def _covers(self, condition: Condition, chain: Chain) -> tuple[Cover, ...]:
+    def _run_of(self, chain: Chain) -> tuple[float, float]:
+        """The first and the last shaft angle of the run, or the times of a timed chain. Raises Unprovable."""
+        speeds = [abs(end) for end in self._speeds]
+        if self._speeds[0] * self._speeds[1] <= 0.0:
+            raise Unprovable("the speed of the shaft is 0 within the range")
+        by_revolutions = self._scene.step is None
+        turned = self._scene.periods * (2.0 * math.pi if by_revolutions else max(speeds))
+        if chain.timed:
+            return 0.0, turned / min(speeds) if by_revolutions else self._scene.periods
         start = float(self._scene.instances[SHAFT].start(START) or 0.0)
-        if isinstance(condition, Spans):
-            decide = partial(decide_spans, chain, condition, start, self._turned)
-            return (cover(self._box, decide, self._most // 64),) if len(self._box) else (_alone(decide),)
-        return tuple(
-            cover(np.concatenate([[angles], self._box]), partial(decide_always, chain, condition), self._most)
-            for angles in condition.ranges(start, start + self._turned)
-        )
+        return (start, start + turned) if self._speeds[0] > 0.0 else (start - turned, start)
 
     @property
-    def _turned(self) -> float:
-        """The angle by which the shaft turns in the run."""
-        return 2.0 * math.pi * self._scene.periods
+    def _speeds(self) -> tuple[float, float]:
+        """The lowest and the highest mean speed of the shaft."""
+        place = self._targets.get((SHAFT, "speed"))
+        speed = float(self._scene.instances[SHAFT].start("speed") or 0.0)
+        return (speed, speed) if place is None else (self._sides[place - 1].low, self._sides[place - 1].high)
+
+    def _covers(self, condition: Condition, chain: Chain) -> tuple[Cover, ...]:
+        first, last = self._run_of(chain)
+        if isinstance(condition, Spans):
+            decide = partial(decide_spans, chain, condition, (first, last))
+            return (cover(self._box, decide, self._most // 64),) if len(self._box) else (_alone(decide),)
+        ranges = [(first, last)] if chain.timed else condition.ranges(first, last)
+        return tuple(
+            cover(np.concatenate([[angles], self._box]), partial(decide_always, chain, condition), self._most)
+            for angles in ranges
+        )
 
     # ---- witnesses
 
@@ -246,9 +266,9 @@ def _weights(slopes: Floats, boxes: Floats) -> Floats:
     return change
 
 
-def decide_spans(chain: Chain, condition: Spans, start: float, turned: float, boxes: Floats) -> Decision:
+def decide_spans(chain: Chain, condition: Spans, run: tuple[float, float], boxes: Floats) -> Decision:
     """Return the boxes in which every span that the run shows whole is long enough."""
-    proven = [spans_last(chain, condition, start, turned, box) for box in boxes]
+    proven = [spans_last(chain, condition, run, box) for box in boxes]
     widths = boxes[..., 1] - boxes[..., 0]
     return Decision(np.array(proven, dtype=bool), widths / np.maximum(widths.max(axis=0), 1e-300))
 
@@ -262,9 +282,9 @@ def _alone(decide: Callable[[Floats], Decision]) -> Cover:
 OUT, RISES, FALLS, IN, UNKNOWN = range(5)
 
 
-def spans_last(chain: Chain, condition: Spans, start: float, turned: float, box: Floats) -> bool:
+def spans_last(chain: Chain, condition: Spans, run: tuple[float, float], box: Floats) -> bool:
     """Return whether all spans of one box last long enough: angles are bisected where they begin and end."""
-    edges = np.linspace(start, start + turned, max(2, math.ceil(turned / 0.05)) + 1)
+    edges = np.linspace(*run, max(2, math.ceil((run[1] - run[0]) / 0.05)) + 1)
     while True:
         kinds = _kinds(chain, condition.inside, edges, box)
         doubtful = _doubtful(kinds, edges, condition.at_least)

@@ -16,13 +16,15 @@ def outwards(low: Floats, high: Floats) -> Floats:
 
 
 def plus(a: Floats, b: Floats) -> Floats:
-    """Return the sums of two arrays of spans."""
-    return outwards(a[..., 0] + b[..., 0], a[..., 1] + b[..., 1])
+    """Return the sums of two arrays of spans; a sum that is 0, or with 0, is exact."""
+    total = a + b
+    exact = (total == 0.0) | (a == 0.0) | (b == 0.0)
+    return np.where(exact, total, outwards(total[..., 0], total[..., 1]))
 
 
 def minus(a: Floats, b: Floats) -> Floats:
     """Return the differences of two arrays of spans."""
-    return outwards(a[..., 0] - b[..., 1], a[..., 1] - b[..., 0])
+    return plus(a, -b[..., ::-1])
 
 
 def times(a: Floats, b: Floats) -> Floats:
@@ -31,7 +33,12 @@ def times(a: Floats, b: Floats) -> Floats:
         products = a[..., :, None] * b[..., None, :]
     products[(a[..., :, None] == 0.0) | (b[..., None, :] == 0.0)] = 0.0
     flat = products.reshape(*products.shape[:-2], 4)
-    return outwards(flat.min(axis=-1), flat.max(axis=-1))
+    found = outwards(flat.min(axis=-1), flat.max(axis=-1))
+    exact = np.all((np.abs(a) == 1.0) | (a == 0.0), axis=-1) | np.all(
+        (np.abs(b) == 1.0) | (b == 0.0), axis=-1
+    )
+    found[exact] = np.stack([flat.min(axis=-1), flat.max(axis=-1)], axis=-1)[exact]
+    return found
 
 
 def both(a: Floats, b: Floats) -> Floats:

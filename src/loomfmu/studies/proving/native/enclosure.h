@@ -88,9 +88,16 @@ static inline span spanned(double low, double high)
     return low <= high ? span{low, high} : span{-INFINITY, INFINITY}; /* NaN leaves it open */
 }
 
+/* A sum that is 0, or with 0, is exact. */
+static inline bool exact(double a, double b)
+{
+    return a == 0.0 || b == 0.0 || a + b == 0.0;
+}
+
 static inline span operator+(span a, span b)
 {
-    return spanned(below(a.low + b.low), above(a.high + b.high));
+    const double low = a.low + b.low, high = a.high + b.high;
+    return spanned(exact(a.low, b.low) ? low : below(low), exact(a.high, b.high) ? high : above(high));
 }
 
 static inline span operator-(span a)
