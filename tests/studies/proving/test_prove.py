@@ -1,9 +1,10 @@
+import numpy as np
 import pytest
 
 import loomfmu
 from loomfmu.cosim.scenes.scene import Scene, parse
 from loomfmu.errors import LoomfmuError
-from loomfmu.studies.proving.prove import Proofs, prove
+from loomfmu.studies.proving.prove import FALLS, IN, OUT, RISES, UNKNOWN, Proofs, doubtful_cells, prove
 
 
 def _status(found: Proofs) -> dict[str, str]:
@@ -94,3 +95,28 @@ def test_bad_input_is_refused_in_a_line(loom: Scene, asked: dict[str, list[str]]
     with pytest.raises(LoomfmuError, match=message) as caught:
         prove(loom, **asked)  # type: ignore[arg-type]
     assert "\n" not in str(caught.value)
+
+
+KINDS = {"r": RISES, "i": IN, "f": FALLS, "o": OUT, "u": UNKNOWN}
+
+
+@pytest.mark.parametrize(
+    ("kinds", "proven"),
+    [
+        ("oriifo", True),
+        ("orifo", False),  # too short
+        ("orfo", False),  # it may be inside for a moment
+        ("orofo", True),  # it never gets there
+        ("ifori", True),  # both ends of the run cut one off
+        ("for", True),
+        ("ifrifo", False),  # a short one may follow the one that is cut off
+        ("rifo", False),  # it begins within the run
+        ("riifo", True),
+        ("oriuifo", False),
+        ("uo", False),
+        ("iii", True),
+    ],
+)
+def test_spans_are_proven_only_where_they_are_known(kinds: str, proven: bool) -> None:
+    edges = np.arange(len(kinds) + 1.0)
+    assert bool(doubtful_cells(np.array([KINDS[each] for each in kinds]), edges, 1.5).any()) != proven

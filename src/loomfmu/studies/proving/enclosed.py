@@ -165,7 +165,7 @@ class Enclosed:
         )
         self._memoryless = component.keeps == NOTHING
         library = _library(component, tuple(wanted), tuple(settings.items()))  # type: ignore[arg-type] # mypy 6613
-        self._enclose = ctypes.CDLL(str(library)).enclose
+        self._enclose = ctypes.PyDLL(str(library)).enclose  # one thread at a time: it has one state
         self._wanted, self.component = wanted, component
 
     def bounds(

@@ -287,7 +287,7 @@ def spans_last(chain: Chain, condition: Spans, run: tuple[float, float], box: Fl
     edges = np.linspace(*run, max(2, math.ceil((run[1] - run[0]) / 0.05)) + 1)
     while True:
         kinds = _kinds(chain, condition.inside, edges, box)
-        doubtful = _doubtful(kinds, edges, condition.at_least)
+        doubtful = doubtful_cells(kinds, edges, condition.at_least)
         if not doubtful.any():
             return True
         narrow = np.diff(edges) < FINEST
@@ -297,7 +297,7 @@ def spans_last(chain: Chain, condition: Spans, run: tuple[float, float], box: Fl
         edges = np.sort(np.concatenate([edges, middle]))
 
 
-def _kinds(chain: Chain, form: Linear, edges: Floats, box: Floats) -> Floats:
+def _kinds(chain: Chain, form: Linear, edges: Floats, box: Floats) -> NDArray[np.int_]:
     """Say of each cell of angles how a form moves in it, all over a box of parameters."""
     boxes = np.empty((len(edges) - 1, 1 + len(box), 2))
     boxes[:, 0, 0], boxes[:, 0, 1] = edges[:-1], edges[1:]
@@ -312,27 +312,21 @@ def _kinds(chain: Chain, form: Linear, edges: Floats, box: Floats) -> Floats:
     return kinds
 
 
-def _doubtful(kinds: Floats, edges: Floats, at_least: float) -> NDArray[np.bool_]:
-    """The cells that keep a span from being long enough: those about it that are not surely inside."""
+def doubtful_cells(kinds: NDArray[np.int_], edges: Floats, at_least: float) -> NDArray[np.bool_]:
+    """Return the cells to bisect: of each stretch that is not surely outside, unless its span is long enough.
+
+    A span is known where it only rises, then is inside, then only falls. An end of the run may cut it off.
+    """
     doubtful = np.zeros(len(kinds), dtype=bool)
-    inside = np.flatnonzero(np.concatenate([[True], kinds == OUT, [True]]))
-    for before, after in pairwise(inside.tolist()):
-        cells = slice(before, after - 1)
+    outside = [-1, *np.flatnonzero(kinds == OUT).tolist(), len(kinds)]
+    for before, after in pairwise(outside):
+        cells = slice(before + 1, after)
         group = kinds[cells]
-        if not len(group) or before == 0 or after == len(kinds) + 1:
-            # an end of the run cuts it off; but another span may hide there
-            cut = group == UNKNOWN
-            doubtful[cells] = cut
-            continue
-        sure = np.flatnonzero(group == IN)
-        if not len(sure):
-            # from outside to outside: nothing, if it only rises or only falls
-            doubtful[cells] = not (np.all(group == RISES) or np.all(group == FALLS))
-            continue
-        first, last = sure[0], sure[-1]
-        whole = bool(np.all(group[first : last + 1] == IN))
-        ends = bool(np.all(group[:first] == RISES) and np.all(group[last + 1 :] == FALLS))
-        length = float(np.diff(edges)[cells][first : last + 1].sum()) * (1.0 - 1e-12)
-        if not (whole and ends and length >= at_least):
+        rises, inside, falls = (int(np.sum(group == kind)) for kind in (RISES, IN, FALLS))
+        known = np.array_equal(group, [RISES] * rises + [IN] * inside + [FALLS] * falls)
+        cut = (before == -1 and not rises) or (after == len(kinds) and not falls)
+        length = float(np.diff(edges)[cells][rises : rises + inside].sum()) * (1.0 - 1e-12)
+        long_enough = cut or length >= at_least if inside else not (rises and falls)
+        if not (known and long_enough):
             doubtful[cells] = group != IN
     return doubtful
