@@ -18,8 +18,8 @@ from loomfmu.studies.proving.check import check
 def told(loom: Any, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     """A certificate of one claim over a narrow range."""
     path = tmp_path_factory.mktemp("proof") / "proof.json"
-    found = prove(loom, over=["shaft.speed=640rpm..645rpm"], claims=["margin", "transfer"])
-    assert certificate.write(found, path) == ["margin", "transfer"]
+    found = prove(loom, over=["shaft.speed=640rpm..645rpm"], claims=["margin", "dwell", "transfer"])
+    assert certificate.write(found, path) == ["margin", "dwell", "transfer"]
     return dict(json.loads(path.read_text()))
 
 
@@ -30,7 +30,7 @@ def _check(told: dict[str, Any], folder: Path) -> list[str]:
 
 
 def test_a_certificate_is_confirmed(told: dict[str, Any], tmp_path: Path) -> None:
-    assert _check(told, tmp_path) == ["margin", "transfer"]
+    assert _check(told, tmp_path) == ["margin", "dwell", "transfer"]
 
 
 def _wider(told: dict[str, Any]) -> None:
@@ -61,12 +61,17 @@ def _other_equations(told: dict[str, Any]) -> None:
     told["equations"]["BeltMonitor"] = "0" * 64
 
 
+def _longer_dwell(told: dict[str, Any]) -> None:
+    told["scene"] = told["scene"].replace('"80 deg"', '"90 deg"')
+    del told["claims"][0]
+
+
 def _without_a_condition(told: dict[str, Any]) -> None:
     told["claims"][0]["conditions"] = []
 
 
 def _without_an_angle(told: dict[str, Any]) -> None:
-    told["claims"][1]["conditions"][0].pop()
+    told["claims"][2]["conditions"][0].pop()
 
 
 FORGED = [
@@ -77,6 +82,7 @@ FORGED = [
     (_other_bound, "is not confirmed"),
     (_other_scene, "is not confirmed"),
     (_other_equations, "equations of BeltMonitor are not those"),
+    (_longer_dwell, "dwell is not confirmed"),
     (_without_a_condition, "0 conditions, not 1"),
     (_without_an_angle, "ranges of the shaft angle"),
 ]

@@ -2,9 +2,10 @@ import numpy as np
 import pytest
 
 import loomfmu
+from loomfmu.cosim.claims.conditions import FALLS, IN, OUT, RISES, UNKNOWN, Linear, Spans
 from loomfmu.cosim.scenes.scene import Scene, parse
 from loomfmu.errors import LoomfmuError
-from loomfmu.studies.proving.prove import FALLS, IN, OUT, RISES, UNKNOWN, Proofs, doubtful_cells, prove
+from loomfmu.studies.proving.prove import Proofs, prove
 
 
 def _status(found: Proofs) -> dict[str, str]:
@@ -119,4 +120,5 @@ KINDS = {"r": RISES, "i": IN, "f": FALLS, "o": OUT, "u": UNKNOWN}
 )
 def test_spans_are_proven_only_where_they_are_known(kinds: str, proven: bool) -> None:
     edges = np.arange(len(kinds) + 1.0)
-    assert bool(doubtful_cells(np.array([KINDS[each] for each in kinds]), edges, 1.5).any()) != proven
+    cells = np.array([KINDS[each] for each in kinds])
+    assert bool(Spans(Linear(()), 1.5).doubtful(cells, edges).any()) != proven

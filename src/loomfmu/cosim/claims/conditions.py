@@ -6,12 +6,19 @@ A run shows a claim at its samples and between them; a condition says what must 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
 
 from ...components import COMPONENTS
 from ...declaring.variables import variables_of
 from ...errors import LoomfmuError
 from .arguments import Window
 from .movers import Wired
+
+Floats = NDArray[np.float64]
 
 
 class Unprovable(LoomfmuError):
@@ -57,6 +64,9 @@ class Always:
         return found
 
 
+OUT, RISES, FALLS, IN, UNKNOWN = range(5)  # what a form does in a cell of angles
+
+
 @dataclass(frozen=True)
 class Spans:
     """Whenever this stops being negative, it stays so for an angle [rad], unless the run ends before."""
@@ -64,10 +74,37 @@ class Spans:
     inside: Linear
     at_least: float
 
+    widest: ClassVar[float] = 0.05  # a cell of angles, at first [rad]
+    finest: ClassVar[float] = 2.0**-12  # the closest that an end of a span is looked for [rad]
+
     @property
     def forms(self) -> tuple[Linear, ...]:
         """Return all that it is about."""
         return (self.inside,)
+
+    def cells(self, first: float, last: float) -> Floats:
+        """Return the edges of cells of angles to begin with."""
+        return np.linspace(first, last, max(2, math.ceil((last - first) / self.widest)) + 1)
+
+    def doubtful(self, kinds: NDArray[np.int_], edges: Floats) -> NDArray[np.bool_]:
+        """Return the cells to bisect: those of each stretch that may be a span which is too short.
+
+        `kinds` says what `inside` does in each cell. A span is known where it only rises, then is inside,
+        then only falls. An end of the run may cut it off.
+        """
+        doubtful = np.zeros(len(kinds), dtype=bool)
+        outside = [-1, *np.flatnonzero(kinds == OUT).tolist(), len(kinds)]
+        for before, after in pairwise(outside):
+            cells = slice(before + 1, after)
+            group = kinds[cells]
+            rises, inside, falls = (int(np.sum(group == kind)) for kind in (RISES, IN, FALLS))
+            known = np.array_equal(group, [RISES] * rises + [IN] * inside + [FALLS] * falls)
+            cut = (before == -1 and not rises) or (after == len(kinds) and not falls)
+            length = float(np.diff(edges)[cells][rises : rises + inside].sum()) * (1.0 - 1e-12)
+            long_enough = cut or length >= self.at_least if inside else not (rises and falls)
+            if not (known and long_enough):
+                doubtful[cells] = group != IN
+        return doubtful
 
 
 Condition = Always | Spans

@@ -6,11 +6,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from ...cosim.claims.conditions import Always
 from ...errors import LoomfmuError
 from ...files import starts_with, write_file
 from ...fmi import source
-from .prove import Proof, Proofs
+from .prove import Proofs
 
 FORMAT = "loomfmu proof 1"
 CERTIFICATE = starts_with("a certificate of a proof", b'{"format": "loomfmu proof', suffix=".json")
@@ -19,9 +18,9 @@ CERTIFICATE = starts_with("a certificate of a proof", b'{"format": "loomfmu proo
 def write(proofs: Proofs, path: Path, inputs: Sequence[Path] = (), overwrite: bool = False) -> list[str]:
     """Write a certificate of the claims that are proven at every angle, and return their names.
 
-    Claims on spans, such as a dwell, have none. Raises LoomfmuError if there is none to certify.
+    Proofs over time have none. Raises LoomfmuError if there is none to certify.
     """
-    certified = [proof for proof in proofs.claims if proof and _certifiable(proof)]
+    certified = [proof for proof in proofs.claims if proof and proof.components]
     if not certified:
         raise LoomfmuError(f"{path} is not written: no claim that a certificate can confirm is proven")
     scene = proofs.scene
@@ -47,7 +46,3 @@ def write(proofs: Proofs, path: Path, inputs: Sequence[Path] = (), overwrite: bo
     }
     write_file(path, json.dumps(told).encode(), CERTIFICATE, inputs, overwrite)
     return [proof.claim for proof in certified]
-
-
-def _certifiable(proof: Proof) -> bool:
-    return bool(proof.components) and all(isinstance(condition, Always) for condition, _ in proof.covers)

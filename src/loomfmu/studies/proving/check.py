@@ -7,11 +7,14 @@ import math
 import tempfile
 from collections.abc import Iterator, Sequence
 from functools import partial
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from ...components.shaft_driven import FOLLOWING, ShaftDriven
-from ...cosim.claims.conditions import Always, Condition, Linear, names_of
+from ...cosim.claims.conditions import FALLS, IN, OUT, RISES, UNKNOWN, Condition, Linear, Spans, names_of
 from ...cosim.planning.pruning import prune
 from ...cosim.reading import requested
 from ...cosim.scenes import scene as scenes
@@ -94,19 +97,23 @@ class _Check:
         if slowest <= 0.0 or self._scene.step is not None:
             raise Refused("only forward runs by revolutions can be confirmed")
         last = start + 2.0 * math.pi * self._scene.periods
-        if not isinstance(condition, Always):
-            raise Refused(f"{name}: spans cannot be confirmed")
+        if isinstance(condition, Spans):
+            (tree,) = covers
+            for box in list(_leaves(tuple(self._ends), iter(tree))):
+                if not _spans_last(chain, condition, (start, last), box):
+                    raise Refused(f"{name} is not confirmed for {_text(box)}")
+            return
         ranges = condition.ranges(start, last)
         if len(ranges) != len(covers):
             raise Refused(f"{name}: {len(covers)} ranges of the shaft angle, not {len(ranges)}")
         for angles, tree in zip(ranges, covers, strict=True):
-            for box in _leaves((angles, *self._ends), iter(tree)):
+            for box in list(_leaves((angles, *self._ends), iter(tree))):
                 if not _holds(chain, condition.any_of, box, FINER):
                     raise Refused(f"{name} is not confirmed for {_text(box)}")
 
 
 def _leaves(box: Box, tree: Iterator[int]) -> Iterator[Box]:
-    """The boxes of a tree that starts here, which are together this one; nothing may be left of it."""
+    """Yield the boxes of a tree, which are together this one. Raises Refused if it is not whole."""
     stack = [box]
     while stack:
         box = stack.pop()
@@ -142,6 +149,36 @@ def _holds(chain: "_Mechanisms", forms: Sequence[Linear], box: Box, finer: int) 
         return False
     parts = ((low, 0.5 * (low + high)), (0.5 * (low + high), high))
     return all(_holds(chain, forms, (*box[:side], part, *box[side + 1 :]), finer - 1) for part in parts)
+
+
+def _spans_last(chain: "_Mechanisms", condition: Spans, run: Ends, box: Box) -> bool:
+    """Return whether all spans within a run last long enough, all over a box of parameters."""
+    known: dict[Ends, int] = {}
+    edges = condition.cells(*run)
+    while True:
+        cells = [(float(low), float(high)) for low, high in pairwise(edges)]
+        for cell in cells:
+            if cell not in known:
+                known[cell] = _kind(chain, condition.inside, (cell, *box))
+        doubtful = condition.doubtful(np.array([known[cell] for cell in cells]), edges)
+        if not doubtful.any():
+            return True
+        if (np.diff(edges)[doubtful] < condition.finest).any():
+            return False
+        edges = np.sort(np.concatenate([edges, 0.5 * (edges[:-1] + edges[1:])[doubtful]]))
+
+
+def _kind(chain: "_Mechanisms", form: Linear, box: Box) -> int:
+    """Say what a form does while the angle, the first side of a box, rises."""
+    try:
+        found, middle = chain.numbers(box)
+    except Unknown:
+        return UNKNOWN
+    value = _narrowed(chain.value(form, found), chain.value(form, middle), box)
+    if value.ends[1] < 0.0 or value.ends[0] >= 0.0:
+        return OUT if value.ends[1] < 0.0 else IN
+    low, high = value.slopes[0] if value.slopes else (0.0, 0.0)
+    return RISES if low > 0.0 else FALLS if high < 0.0 else UNKNOWN
 
 
 def _middle(box: Box) -> list[float]:

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
-from itertools import cycle, pairwise, product
+from itertools import cycle, product
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import units
-from ...cosim.claims.conditions import Always, Condition, Linear, Spans, Unprovable, names_of
+from ...cosim.claims.conditions import (
+    FALLS,
+    IN,
+    OUT,
+    RISES,
+    UNKNOWN,
+    Always,
+    Condition,
+    Linear,
+    Spans,
+    Unprovable,
+    names_of,
+)
 from ...cosim.planning.requested import Requested
 from ...cosim.prepared import Prepared
 from ...cosim.reading import requested
@@ -28,7 +40,6 @@ from .spans import Floats
 
 PROVEN, REFUTED, OPEN, IMPOSSIBLE = "proven", "refuted", "open", "cannot be proven"
 MOST = 200_000  # boxes for one condition
-FINEST = 2.0**-12  # rad: a span whose end is not found this closely is left to smaller boxes
 LOOKED_AT = 16  # boxes left open, in whose middles runs look for a witness
 
 
@@ -279,18 +290,15 @@ def _alone(decide: Callable[[Floats], Decision]) -> Cover:
     return Cover(np.zeros((0, 2)), [-1], [] if proven else [np.zeros((0, 2))], 1, float(proven))
 
 
-OUT, RISES, FALLS, IN, UNKNOWN = range(5)
-
-
 def spans_last(chain: Chain, condition: Spans, run: tuple[float, float], box: Floats) -> bool:
     """Return whether all spans of one box last long enough: angles are bisected where they begin and end."""
-    edges = np.linspace(*run, max(2, math.ceil((run[1] - run[0]) / 0.05)) + 1)
+    edges = condition.cells(*run)
     while True:
         kinds = _kinds(chain, condition.inside, edges, box)
-        doubtful = doubtful_cells(kinds, edges, condition.at_least)
+        doubtful = condition.doubtful(kinds, edges)
         if not doubtful.any():
             return True
-        narrow = np.diff(edges) < FINEST
+        narrow = np.diff(edges) < condition.finest
         if (doubtful & narrow).any():
             return False
         middle = 0.5 * (edges[:-1] + edges[1:])[doubtful]
@@ -310,23 +318,3 @@ def _kinds(chain: Chain, form: Linear, edges: Floats, box: Floats) -> NDArray[np
     kinds[found.values[:, 0] >= 0.0] = IN
     kinds[found.values[:, 1] < 0.0] = OUT
     return kinds
-
-
-def doubtful_cells(kinds: NDArray[np.int_], edges: Floats, at_least: float) -> NDArray[np.bool_]:
-    """Return the cells to bisect: of each stretch that is not surely outside, unless its span is long enough.
-
-    A span is known where it only rises, then is inside, then only falls. An end of the run may cut it off.
-    """
-    doubtful = np.zeros(len(kinds), dtype=bool)
-    outside = [-1, *np.flatnonzero(kinds == OUT).tolist(), len(kinds)]
-    for before, after in pairwise(outside):
-        cells = slice(before + 1, after)
-        group = kinds[cells]
-        rises, inside, falls = (int(np.sum(group == kind)) for kind in (RISES, IN, FALLS))
-        known = np.array_equal(group, [RISES] * rises + [IN] * inside + [FALLS] * falls)
-        cut = (before == -1 and not rises) or (after == len(kinds) and not falls)
-        length = float(np.diff(edges)[cells][rises : rises + inside].sum()) * (1.0 - 1e-12)
-        long_enough = cut or length >= at_least if inside else not (rises and falls)
-        if not (known and long_enough):
-            doubtful[cells] = group != IN
-    return doubtful
