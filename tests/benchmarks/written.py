@@ -11,6 +11,7 @@ import guard
 import limits
 import live_pages
 import precision
+import proving
 import pruning
 import reading
 import scaling
@@ -38,6 +39,7 @@ BENCHMARKS: dict[str, tuple[str, ModuleType]] = {
     live_pages.NAME: ("The page in which the loom runs", live_pages),
     writing.NAME: ("Writing traces", writing),
     reading.NAME: ("Reading traces", reading),
+    proving.NAME: ("Proofs", proving),
     guard.NAME: ("Guard", guard),
 }
 RUNS = (
