@@ -54,7 +54,7 @@ def section(find: Find) -> str:
     """All claims of the demonstration loom that can be proven."""
     return parts(
         "All claims of the demonstration loom but the one on its damper, for all shaft angles of three"
-        f" revolutions and the first of these ranges: {', '.join(OVER)}. Confirming runs the components' Python"
-        " on intervals.",
+        f" revolutions and the first of these ranges: {', '.join(OVER)}. Confirming runs"
+        " the components' Python on intervals.",
         whole(find(NAME)),
     )
