@@ -344,6 +344,9 @@ MISTAKES = {
     "connection drive.motor.flange.phi -> drive.phi: IntegerMappingTransformation is not supported, only": {
         "transformed": "<ssc:IntegerMappingTransformation/>"
     },
+    "drive.free and drive.motor.load.tau are connected in two different ways": {
+        "transformed": f"</ssd:Connection><ssd:Connection {FREE}>{TWICE}",
+    },
     "resources/none.fmu is not in the package": component('source="resources/none.fmu"'),
     "../x.fmu is not in the package": component('source="../x.fmu"'),
     "http://host/x.fmu is not in the package": component('source="http://host/x.fmu"'),

@@ -182,9 +182,11 @@ class _Reader:
         ports = dict(fmu.ports)
         for connector in connectors(element):
             unit = stated_by(connector, self.units)
-            port = ports.get(fmu.name_of(required(connector, "name")))
-            if unit and port is not None and port.kind == "Real":
-                ports[port.name] = port.with_unit(unit.name, unit.definition, f"{name}.{port.name}")
+            own = required(connector, "name")
+            scalar = ports.get(fmu.name_of(own))
+            for port in fmu.elements(own) or ([scalar] if scalar else []):
+                if unit and port.kind == "Real":
+                    ports[port.name] = port.with_unit(unit.name, unit.definition, f"{name}.{port.name}")
         return replace(fmu, ports=ports)
 
     # ---- the rest
