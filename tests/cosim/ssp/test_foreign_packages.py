@@ -141,11 +141,13 @@ def test_a_scene_with_another_makers_fmu_goes_there_and_back(tmp_path: Path, uni
     motor2(tmp_path, units=units)
     stated = {"flange_phi": "rad", "flange_w": "rad/s", "flange_a": "rad/s2", "J": "kg.m2"}
     table = ", ".join(f'{name} = "{unit}"' for name, unit in stated.items())
-    own = f'J = 0.7\nmode = "no_way_back"\nunits = {{{table}}}\n'
+    own = f'J = 0.7\ntolerance = 1e-7\nmode = "no_way_back"\nunits = {{{table}}}\n'
     scene = scenes.parse(MOTOR + own + WEFT, "motor", directory=tmp_path)
     ssp.export(scene, tmp_path / "motor.ssp", "live")
     before = run(scene, output=tmp_path / "before.h5").trace
-    after = run(tmp_path / "motor.ssp", output=tmp_path / "after.h5").trace
+    again = run(tmp_path / "motor.ssp", output=tmp_path / "after.h5")
+    after = again.trace
+    assert again.scene.instances["motor"].fmu.tolerance == 1e-7
     assert set(before) == set(after)
     for signal in before:
         np.testing.assert_array_equal(before[signal], after[signal])
