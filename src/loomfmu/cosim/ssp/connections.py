@@ -128,9 +128,8 @@ def _causality(node: Node, instances: dict[str, Instance], names: Names) -> str:
     if name is None:
         return ""
     fmu = instances[name].fmu
-    if array := fmu.elements(node[1]):
-        return array[0].causality
-    causality = fmu.port(fmu.name_of(node[1]), f"connection to {name}").causality
+    array = fmu.elements(node[1])
+    causality = (array or [fmu.port(fmu.name_of(node[1]), f"connection to {name}")])[0].causality
     if causality not in ("output", "input", "parameter"):
         raise LoomfmuError(f"connection to {_dotted(node)}: a {causality} cannot be connected")
     return causality
