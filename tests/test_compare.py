@@ -179,7 +179,7 @@ def test_many_claims_of_other_names_are_not_compared_each_with_each() -> None:
         for run in "xy"
     )
     Counting.compared = 0
-    pairs = list(comparing._paired(first, second))
+    pairs = list(comparing.paired(first, second))
     assert pairs == [*((one, None) for one in first), *((None, other) for other in second)]
     assert Counting.compared < 10 * 300
 
@@ -328,7 +328,7 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert (
         "1 of 2 signals" in first and "first to differ: belt.x" in first and ">largest difference<" in first
     )
-    assert "a.h5: The claim holds" in rest and "b.h5: The claim holds" in rest
+    assert "a.h5: the claim holds" in rest and "b.h5: the claim holds" in rest
 
 
 def test_memory_holds_a_few_columns_whatever_the_number_of_signals(tmp_path: Path) -> None:

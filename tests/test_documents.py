@@ -203,7 +203,15 @@ def within(start: str, command: str) -> bool:
 
 
 WORDS = {3: "three", 4: "four", 5: "five", 6: "six"}
-LONG = ("report", "limits", "testing", "tolerances", "optimizing", "fitting")  # followed by the slow tests
+LONG = (
+    "report",
+    "limits",
+    "testing",
+    "tolerances",
+    "proving",
+    "optimizing",
+    "fitting",
+)  # followed by the slow tests
 FOLLOWED = ("tour", "scenes", "how_sure", "traces", *LONG)
 NOT_RUN = {  # pages with commands or Python of which no test runs all, and why
     "importing": "other tools, which tests/foreign runs where they are installed",

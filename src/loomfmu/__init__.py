@@ -33,6 +33,8 @@ if TYPE_CHECKING:
     from .studies.limits.results import Limits as Limits
     from .studies.optimizing.optimize import optimize as optimize
     from .studies.optimizing.optimum import Optimum as Optimum
+    from .studies.proving.prove import Proofs as Proofs
+    from .studies.proving.prove import prove as prove
     from .studies.tolerances.tolerances import Tolerances as Tolerances
     from .studies.tolerances.tolerances import tolerances as tolerances
     from .sweeps.run import Sweep as Sweep
@@ -53,6 +55,7 @@ _HOMES = {
     "LoomfmuError": "errors",
     "Optimum": "studies.optimizing.optimum",
     "Prepared": "cosim.prepared",
+    "Proofs": "studies.proving.prove",
     "Result": "cosim.results",
     "Sweep": "sweeps.run",
     "Tolerances": "studies.tolerances.tolerances",
@@ -69,6 +72,7 @@ _HOMES = {
     "fit": "studies.fitting.fit",
     "limit": "studies.limits.limits",
     "optimize": "studies.optimizing.optimize",
+    "prove": "studies.proving.prove",
     "run": "cosim.run",
     "sweep": "sweeps.run",
     "tolerances": "studies.tolerances.tolerances",

@@ -8,6 +8,7 @@ EXTRAS = {  # the packages of each, by the names under which they are imported
     "cam": ("ezdxf",),
     "native": ("ziglang",),
     "plot": ("matplotlib",),
+    "proof": ("flint",),
     "report": ("jinja2",),
     "study": ("SALib", "filelock", "tomlkit"),
     "sweep": ("dask", "distributed", "filelock", "pyarrow"),

@@ -174,7 +174,7 @@ def test_a_revolution_without_worst_values_says_where_they_are(
     assert {each.revolution for each in demo.verdicts} == {1, 3}
     page = opened(written(demo))
     text = page.locator("#diagram-straight .elsewhere")
-    assert text.is_hidden()
+    assert text.is_hidden()  # it opens at the worst claim
     page.evaluate("loomfmu.seek(1.5 * 2 * Math.PI)")
     assert text.is_visible() and text.text_content() == "worst values in revolutions 1 and 3"
 
@@ -191,8 +191,11 @@ def test_a_revolution_beyond_those_that_are_kept_is_not_drawn(
 ) -> None:
     monkeypatch.setattr(diagram, "MOST_DRAWN", 1)
     page = opened(report.write([whole], tmp_path / "short.html"))
-    assert page.locator("#diagram-missing").is_hidden()
-    page.evaluate("loomfmu.seek(1.5 * 2 * Math.PI)")
+    assert page.inner_text("#diagram-revolution") == "2"  # that of the worst claim is kept, and the first
+    for turn in (1.5, 0.5):
+        page.evaluate(f"loomfmu.seek({turn} * 2 * Math.PI)")
+        assert page.locator("#diagram-missing").is_hidden()
+    page.evaluate("loomfmu.seek(2.5 * 2 * Math.PI)")
     assert page.locator("#diagram-missing").is_visible()
     assert page.locator("#diagram-straight g[data-drawing]:not([hidden])").count() == 0
 

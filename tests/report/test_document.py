@@ -11,6 +11,7 @@ from browser import until
 
 from loomfmu import LoomfmuError, report
 from loomfmu.cli import main
+from loomfmu.report.claims import side_by_side
 from loomfmu.report.document import page
 from loomfmu.report.section import Subject
 from loomfmu.traces import Trace
@@ -111,8 +112,15 @@ def test_a_report_of_two_traces_judges_both(demo: Trace, fast: Trace, written: C
     for traces in ([demo, fast], [fast, demo]):
         page = written(*traces).read_text()
         outcomes = dict(re.findall(r'class="outcome (\w+)"><span [^>]*></span>([^<]*)<', page))
-        assert outcomes == {"holds": "demo.h5: All 6 claims hold", "fails": "fast.h5: 2 of 6 claims fail"}
-        assert page.count(">FAILS</td>") == 2 and page.count('<table class="claims">') == 2
+        assert outcomes == {"holds": "demo.h5: all 6 claims hold", "fails": "fast.h5: 4 of 6 claims hold"}
+        assert page.count(">FAILS</strong>") == 2 and page.count(">holds</strong>") == 10
+
+
+def test_a_claim_that_a_trace_does_not_have_is_not_judged_there(demo: Trace, fast: Trace) -> None:
+    first, *others = demo.verdicts
+    rows = side_by_side([others, fast.verdicts, [first]])
+    assert [row[2] for row in rows] == [None] * 5 + [first] and rows[-1] == [None, fast.verdicts[0], first]
+    assert all(one is not None and one.claim == two.claim for one, two, _ in rows[:-1] if two is not None)
 
 
 def test_without_a_trace_there_is_nothing_to_report() -> None:

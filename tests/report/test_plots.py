@@ -105,31 +105,41 @@ def line(page: Any, name: str) -> float:
 
 def test_signals_of_claims_are_shown_first(page: Any, demo: Trace) -> None:
     names = page.locator("#plots figure").evaluate_all("all => all.map(each => each.dataset.name)")
-    assert names == list(dict.fromkeys(verdict.signal for verdict in demo.verdicts))
+    assert names[:2] == ["belt.margin", "belt.speed_limit"]  # not their extremes so far
+    assert names[2:] == list(dict.fromkeys(verdict.signal for verdict in demo.verdicts[2:]))
+
+
+def test_the_value_at_a_claim_is_that_of_the_claim(page: Any, demo: Trace) -> None:
+    """The lowest margin lies between two samples, and the line between these is above it."""
+    page.locator("#claims .place").first.click()
+    shown = page.inner_text("figure[data-name='belt.margin'] output").split(" | ")
+    assert float(shown[0]) == pytest.approx(demo.verdicts[0].worst, abs=5e-6)  # five digits are shown
 
 
 def test_plots_and_cursor_move_one_another(page: Any, demo: Trace) -> None:
-    plot = page.locator("figure[data-name='belt.lowest_margin'] .u-over")
+    plot = page.locator("figure[data-name='belt.margin'] .u-over")
     box = plot.bounding_box()
     page.evaluate("loomfmu.seek(3 * Math.PI)")
-    assert line(page, "belt.lowest_margin") == pytest.approx(box["width"] / 2, abs=1.0)  # pixels
+    assert line(page, "belt.margin") == pytest.approx(box["width"] / 2, abs=1.0)  # pixels
     plot.click(position={"x": box["width"] / 3, "y": 30})
     # 6 pi over some 1000 pixels: a click is right to a pixel
     assert page.evaluate("loomfmu.position") == pytest.approx(2 * np.pi, abs=0.03)
-    value = page.inner_text("figure[data-name='belt.lowest_margin'] output").split(" | ")[0]
-    assert float(value) == pytest.approx(demo["belt.lowest_margin"][-1], rel=1e-4)  # five digits are shown
+    value = page.inner_text("figure[data-name='belt.margin'] output").split(" | ")[0]
+    assert float(value) == pytest.approx(
+        demo["belt.margin"][np.searchsorted(demo.shaft_angle, 2 * np.pi)], rel=1e-4
+    )  # five digits are shown
 
 
 def test_dragging_zooms_all_plots_and_leaves_the_cursor(page: Any) -> None:
     page.evaluate("document.getElementById('plots').scrollIntoView()")
-    box = page.locator("figure[data-name='belt.lowest_margin'] .u-over").bounding_box()
-    before = line(page, "heald_1.lift")
+    box = page.locator("figure[data-name='belt.margin'] .u-over").bounding_box()
+    before, kept = line(page, "heald_1.lift"), page.evaluate("loomfmu.position")
     page.mouse.move(box["x"] + 5, box["y"] + 30)
     page.mouse.down()
     page.mouse.move(box["x"] + box["width"] / 3, box["y"] + 30, steps=3)
     page.mouse.up()
     until(page, lambda: line(page, "heald_1.lift") != before)
-    assert page.evaluate("loomfmu.position") == 0.0
+    assert page.evaluate("loomfmu.position") == kept
     page.get_by_role("button", name="Whole run").click()
     until(page, lambda: line(page, "heald_1.lift") == before)
 
@@ -239,6 +249,14 @@ def test_a_range_shows_a_dip_beside_the_bound_of_its_claim(
     assert main(["plot", str(copied), "belt.margin", "--ylim", "0..0.5"]) == 0
     assert main(["plot", str(copied), "heald_1.lift", "--ylim", "0mm..20mm"]) == 0
     margin, lift = (each.axes[0] for each in drawn)
+    assert main(["plot", str(copied), "belt.margin", "belt.speed_limit", "--revolution", "2"]) == 0
+    margin_of_turn, limit = drawn.pop().axes
+    assert margin_of_turn.get_xlim() == (0.0, 360.0)
+    low, high = margin_of_turn.get_ylim()  # the margin goes up to 245
+    assert low < 0.1 and 1.0 < high < 2.0
+    assert "values go up to 24" in margin_of_turn.texts[0].get_text()
+    assert np.isnan(limit.get_lines()[0].get_ydata()).any() and limit.get_ylim()[1] < 2000.0
+    assert "no limit" in limit.get_legend_handles_labels()[1]
     assert margin.get_ylim() == (0.0, 0.5) and lift.get_ylim() == (0.0, 20.0)
     # of a claim on belt.lowest_margin, which is the extreme of this signal
     _curve, bound = margin.get_lines()
@@ -258,6 +276,13 @@ def test_a_range_shows_a_dip_beside_the_bound_of_its_claim(
         (["belt.margin", "--ylim", "1"], "ylim 1: the range is empty; write LOW..HIGH, such as 0..1 or"),
         (["belt.margin", "--ylim", "0mm..1mm"], "'0mm' is in mm, which does not fit a number without a unit"),
         (["belt.margin", "--ylim", "1000..2000"], "ylim: no value of belt.margin is within; they are "),
+        (["belt.margin", "--revolution", "4"], "revolution = 4 is outside [1, 3] of"),
+        (["belt.margin", "--revolution", "1", "--fold"], "leave it or --revolution out"),
+        (
+            ["belt.margin", "--from", "200", "--to", "90deg"],
+            "200..90 deg is not a part of the axis, which",
+        ),
+        (["belt.margin", "--from", "3mm"], "--from 3mm: '3mm' is in mm, which does not fit rad"),
         (["belt.margin", "heald_1.lift", "--ylim", "0..1"], "are in different panels; plot them apart"),
     ],
 )

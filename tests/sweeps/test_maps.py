@@ -37,8 +37,8 @@ def drawn(monkeypatch: pytest.MonkeyPatch) -> Any:
         found = loomfmu.sweep(path, processes=1, output="out", restart=True)
         assert found.map == Path("out/map.png")
         with Image.open(found.map) as image:
-            assert image.format == "PNG" and image.size == (800, 550)
-            assert len(image.convert("RGB").getcolors(maxcolors=800 * 550) or []) > 50  # not a blank sheet
+            assert image.format == "PNG" and image.size == (1600, 1100)
+            assert len(image.convert("RGB").getcolors(maxcolors=1600 * 1100) or []) > 50  # not a blank sheet
         return pictures[-1]
 
     return draw
@@ -66,7 +66,11 @@ def test_two_axes_of_numbers_are_contours_with_the_limit_where_it_is(drawn: Any)
     assert picture.axes.get_ylabel() == "belt.guide_clearance [mm]"
     assert picture.figure.axes[1].get_ylabel() == "the belt does not buckle: lowest margin"
     assert picture.axes.get_title() == "Swept"
-    assert legend(picture) == [BUCKLES, "the loom runs below its safe speed: lowest value: limit"]
+    assert legend(picture) == [
+        BUCKLES,
+        "the loom runs below its safe speed: lowest value: limit",
+        "a claim fails",
+    ]
     lines = [each for each in picture.axes.collections if list(getattr(each, "levels", [])) == [0.0]]
     points = np.concatenate(lines[0].get_paths()[0].to_polygons(closed_only=False))
     for clearance in (0.2, 0.3, 0.5):

@@ -31,6 +31,7 @@ COMMANDS = (  # in the order of the help
     studies.sweep,
     studies.limit,
     studies.tolerances,
+    studies.prove,
     studies.optimize,
     studies.fit,
     package.list_,

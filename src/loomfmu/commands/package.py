@@ -86,8 +86,8 @@ def init(options: argparse.Namespace) -> int:
 
     written = catalogue.start(options.directory, everything=options.all)
     say(*written, "")
-    if not (installed("sweep") and installed("plot")):
-        say(f"sweeps and their maps need two extras: {install('sweep', 'plot')}")
+    if missing := [extra for extra in ("sweep", "plot") if not installed(extra)]:
+        say(f"sweeps and their maps also need: {install(*missing)}")
     first = options.directory / catalogue.STARTERS[0]
     say(f"next: {shlex.join(['loomfmu', 'run', str(first)])}")
     return 0

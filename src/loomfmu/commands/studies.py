@@ -7,6 +7,7 @@ from typing import Any
 
 from ..display.printed import say, warn
 from ..errors import LoomfmuError
+from ..extras import need
 from ..files import check_target
 from .shared import SCENE, SET, argument, command, ending, force, pairs, place, vary
 
@@ -116,6 +117,54 @@ def tolerances(options: argparse.Namespace) -> int:
     found = find(options.scene, vary=options.vary, set=pairs(options.overrides), progress=True)
     drawn = {picture: lambda path: pictures.save(draw(found), path, found.title, inputs, options.force)}
     return _reported(found, show, drawn)
+
+
+@command(
+    argument("scene", "SCENE", "the scene (.toml or .ssp)", nargs="?"),
+    argument(
+        "--over",
+        "INSTANCE.VARIABLE=LOW..HIGH",
+        "a parameter and its range, such as shaft.speed=300rpm..640rpm (repeatable)",
+        action="append",
+        default=[],
+    ),
+    argument("--claim", "NAME", "only this claim (repeatable)", action="append"),
+    argument("--boxes", "N", "boxes that are tried for a claim before it is left open (200000)", type=int),
+    SET,
+    argument("--certificate", "FILE.json", "also write what others need to confirm it"),
+    argument("--check", "FILE.json", "confirm a certificate instead of proving"),
+    force("the certificate even if loomfmu did not write it"),
+    statuses=(
+        "0 all claims are proven, or confirmed; 1 one is refuted, left open or cannot be proven; 2 bad input."
+    ),
+)
+def prove(options: argparse.Namespace) -> int:
+    """Prove claims for all shaft angles and all values within ranges."""
+    if (options.scene is None) == (options.check is None):
+        raise LoomfmuError("prove takes either a SCENE or --check FILE.json")
+    if options.check is not None:
+        need("confirming a certificate", "proof")
+        from ..studies.proving.check import check
+
+        say(*(f"confirmed: {told}" for told in check(options.check)))
+        return 0
+    from ..studies.proving import certificate
+    from ..studies.proving.proofs_shown import show
+    from ..studies.proving.prove import MOST
+    from ..studies.proving.prove import prove as find
+
+    inputs, output = [Path(options.scene)], Path(options.certificate) if options.certificate else None
+    if output is not None:
+        check_target(output, certificate.CERTIFICATE, inputs, options.force)
+    found = find(
+        options.scene,
+        over=options.over,
+        set=pairs(options.overrides),
+        claims=options.claim,
+        boxes=MOST if options.boxes is None else options.boxes,
+    )
+    writers = {output: lambda path: certificate.write(found, path, inputs, options.force)}
+    return _reported(found, show, writers)
 
 
 @command(

@@ -153,7 +153,14 @@ def diagram(options: argparse.Namespace) -> int:
     ),
     argument("--over", None, "the shaft's angle if a shaft turns, by default", choices=("angle", "time")),
     flag("--fold", "lay the revolutions over one another"),
-    argument("--ylim", "LOW..HIGH", "the range that is drawn, with its unit, such as 0..1 or 0mm..5mm"),
+    argument(
+        "--ylim",
+        "LOW..HIGH",
+        "the range that is drawn, with its unit, such as 0..1 or 0mm..5mm; by default around the bound",
+    ),
+    argument("--from", "X", "where the axis begins: 90deg, or 20ms over time", dest="start"),
+    argument("--to", "X", "where the axis ends", dest="end"),
+    argument("--revolution", "N", "the only one to draw, counted from 1", type=int),
     argument("--output", "FILE.png|svg|pdf", "FILE_plot.png beside the trace by default"),
     force("the picture even if loomfmu did not draw it"),
 )
@@ -170,8 +177,8 @@ def plot(options: argparse.Namespace) -> int:
     signals = [name for name in options.names if name not in more]
     output = Path(options.output) if options.output else None
     traces = [Trace(path) for path in paths]
-    over, fold, force, ylim = options.over, options.fold, options.force, options.ylim
-    say(f"written: {pictures.plot(traces, signals, output, over, fold, force, ylim)}")
+    axis = {key: getattr(options, key) for key in ("over", "fold", "ylim", "start", "end", "revolution")}
+    say(f"written: {pictures.plot(traces, signals, output, overwrite=options.force, **axis)}")
     return 0
 
 

@@ -16,6 +16,7 @@ from ..cosim.standard import standard
 from ..fmi.native.libraries import module_of
 from ..fmi.native.sources import code_of
 from ..traces import Trace, Verdict
+from ..traces.plotting import curve_of
 
 
 def claims(scene: Scene, ends: Iterable[Scene], trace: Trace, verdicts: Sequence[Verdict]) -> dict[str, Any]:
@@ -84,6 +85,7 @@ def _form(form: Form, verdict: Verdict, trace: Trace) -> dict[str, Any]:
     shown = replace(verdict, unit=unit, display_unit=display)
     return {
         "signal": form.signal,
+        "curve": curve_of(trace, form.signal),
         "sense": form.sense,
         "drawn": form.judges(trace),
         "factor": shown.displayed(1.0),

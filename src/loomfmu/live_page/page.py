@@ -3,6 +3,7 @@
 Beside them it holds a run of the scene, which can be read and printed before anything is varied.
 """
 
+import shlex
 import tempfile
 from base64 import b64encode
 from collections.abc import Callable, Sequence
@@ -105,7 +106,21 @@ def _data(scene: Scene, subject: Subject, rows: Rows, varied: Sequence[Knob]) ->
         "constants": constants,
         "knobs": [asdict(knob) for knob in varied],
         "turns": subject.turns,
+        **_command(
+            str(trace.attributes.get("command", "loomfmu run SCENE.toml")), [knob.key for knob in varied]
+        ),
     }
+
+
+def _command(text: str, keys: Sequence[str]) -> dict[str, Any]:
+    """Return the command that runs the scene, without the values of some keys, and those that it set."""
+    words = shlex.split(text)
+    given = [
+        (place, key) for place, word in enumerate(words) if (key := word.partition("=")[0]) in keys and place
+    ]
+    left_out = {each for place, _key in given for each in (place - 1, place)}
+    kept = [word for place, word in enumerate(words) if place not in left_out]
+    return {"command": shlex.join(kept), "set": [key for _place, key in given]}
 
 
 def _stepping(whole: System, trace: Trace, rows: Rows) -> dict[str, Any]:

@@ -7,11 +7,12 @@ from collections.abc import Callable, Sequence
 
 from ..cosim.claims.arguments import Angles, Name, Quantity, angles_text, argument
 from ..cosim.claims.claim import ANGLE, AT_MOST, LANDINGS, PERCENT, Claim
+from ..cosim.claims.conditions import Always, Condition, Linear, Spans
 from ..cosim.claims.judging import Question, needs_shaft
 from ..cosim.claims.movers import Wired
 from ..errors import LoomfmuError
 from ..traces import Signals
-from .lifted import check_lifted_by, dampers_of, lift_of, lifts
+from .lifted import check_lifted_by, dampers_of, height_of, lift_of, lifts
 
 TOLERANCE = 0.015  # of the stroke: within it a frame dwells, unless the claim says otherwise
 SHARE = Quantity("1", between=(0.0, 0.5), of="the stroke")
@@ -22,6 +23,12 @@ class _Lifted(Claim, kind=False):
 
     heald: str = argument(Name())
     lifted_by: str = argument(Name(), "")
+
+    def ends(self, run: Wired, tolerance: float) -> tuple[Linear, Linear]:
+        """Return what is not negative within a share of the stroke from the lower and from the upper end."""
+        lift, stroke = lift_of(self.heald, self.lifted_by, run), f"{self.heald}.stroke"
+        lower = Linear(((tolerance, stroke), (-1.0, lift)))
+        return lower, Linear(((1.0, lift), (tolerance - 1.0, stroke)))
 
     def signals(self, scene: Wired) -> list[str]:
         check_lifted_by(self.lifted_by, dampers_of(scene))
@@ -58,6 +65,9 @@ class Dwell(_Span):
         text = f"dwell within {100 * self.tolerance:g} % of the stroke"
         return self.asked(trace, "dwell", text, "lift", self.tolerance)
 
+    def conditions(self, run: Wired) -> tuple[Condition, ...]:
+        return tuple(Spans(end, self.at_least) for end in self.ends(run, self.tolerance))
+
 
 class ClearShed(_Span):
     """Every time that a frame's warp is beyond a height, either way, lasts a shaft angle."""
@@ -79,6 +89,10 @@ class ClearShed(_Span):
         text, ratio = f"warp beyond {1e3 * self.clearance:g} mm", f"{self.heald}.warp_ratio"
         return self.asked(trace, "clear_shed", text, "warp_height", self.clearance, ratio)
 
+    def conditions(self, run: Wired) -> tuple[Condition, ...]:
+        height = height_of(self.heald, self.lifted_by, run)
+        return tuple(Spans(Linear(((side, height),), -self.clearance), self.at_least) for side in (1.0, -1.0))
+
 
 class DwellContains(_Lifted):
     """At these shaft angles of every revolution the frame is within a share of its stroke from an end."""
@@ -95,3 +109,6 @@ class DwellContains(_Lifted):
         form = self.form(f"dwell at {angles_text(self.angles)}", signals[0])
         stroke = f"{self.heald}.stroke"
         return Question("dwell_contains", [form], signals, [self.tolerance, stroke, *self.angles])
+
+    def conditions(self, run: Wired) -> tuple[Condition, ...]:
+        return (Always(self.ends(run, self.tolerance), angles=tuple(self.angles)),)

@@ -2,7 +2,9 @@
 
 from ..cosim.claims.arguments import Name, Quantity, argument
 from ..cosim.claims.claim import AT_MOST, FORCE, LANDINGS, LENGTH, NOTHING, VELOCITY, Claim
+from ..cosim.claims.conditions import Condition, above
 from ..cosim.claims.judging import Question
+from ..cosim.claims.movers import Wired
 from ..traces import Signals
 
 AS_IT_IS, NEGATIVE, MAGNITUDE = range(3)  # how the extreme of what a latch follows is its lowest value
@@ -25,6 +27,9 @@ class LowestMargin(Claim):
 
     def extremes(self) -> list[tuple[str, float]]:
         return [(f"{self.belt}.lowest_margin", 1.0)]
+
+    def conditions(self, run: Wired) -> tuple[Condition, ...]:
+        return (above(f"{self.belt}.margin", self.bound),)
 
 
 class BeltDeflection(Claim):

@@ -6,6 +6,7 @@ from contextlib import suppress
 from itertools import chain
 from typing import Any
 
+from ..cosim.claims.conditions import Unprovable
 from ..cosim.claims.movers import Wired
 from ..declaring.upstream import sources_of, upstream
 from ..errors import LoomfmuError, listed, shown
@@ -95,6 +96,14 @@ def _damper_in(frame: str, run: Wired) -> str:
     if len(found) > 1:
         raise LoomfmuError(f"{frame} has more than one damper, {listed(found)}; set lifted_by")
     return next(iter(found), "")
+
+
+def height_of(frame: str, lifted_by: str, run: Wired) -> str:
+    """The signal of the height of a frame's warp. Raises Unprovable where a damper's carrier lifts it."""
+    lift = lift_of(frame, lifted_by, run)
+    if lift != f"{frame}.lift":
+        raise Unprovable(f"{lift} depends on the run so far, not on the shaft angle alone")
+    return f"{frame}.warp_height"
 
 
 def lifts(frame: str, lifted_by: str, run: Wired) -> list[str]:

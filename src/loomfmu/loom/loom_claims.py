@@ -4,12 +4,13 @@ from collections.abc import Sequence
 
 from ..cosim.claims.arguments import Edges, Flag, Name, Names, Quantity, Window, argument
 from ..cosim.claims.claim import AT_LEAST, AT_MOST, LANDINGS, LENGTH, ONE, SPEED, VELOCITY, Claim
+from ..cosim.claims.conditions import Always, Condition, Linear
 from ..cosim.claims.judging import Form, Question, needs_shaft
 from ..cosim.claims.movers import Wired
 from ..errors import LoomfmuError
 from ..traces import Signals
 from ..traces.verdict import SHED_OPENING
-from .lifted import check_lifted_by, frames_of, lift_of
+from .lifted import check_lifted_by, frames_of, height_of, lift_of
 
 
 class _InShed(Claim, kind=False):
@@ -20,6 +21,11 @@ class _InShed(Claim, kind=False):
 
     reads = ("belt",)
     unit = LENGTH
+
+    @property
+    def outside(self) -> Linear:
+        """Return what is not negative while the head is not in the shed."""
+        return Linear(((1.0, f"{self.belt}.idle_travel"), (-1.0, f"{self.weft}.travel")))
 
 
 class RapierInOpenShed(_InShed):
@@ -57,6 +63,14 @@ class RapierInOpenShed(_InShed):
             numbers += (f"{frame}.stroke", f"{frame}.warp_ratio")
         return Question("shed", forms, signals, [self.head_height, f"{self.belt}.idle_travel", *numbers])
 
+    def conditions(self, run: Wired) -> tuple[Condition, ...]:
+        heights = [height_of(frame, self.lifted_by, run) for frame in self.healds or frames_of(run)]
+        room = 0.5 * self.head_height
+        return tuple(
+            Always((self.outside, Linear(((1.0, height),), -room), Linear(((-1.0, height),), -room)))
+            for height in heights
+        )
+
 
 class ReedClearOfRapier(_InShed):
     """While the rapier head is in the shed, the reed stays a distance behind its front limit."""
@@ -71,6 +85,10 @@ class ReedClearOfRapier(_InShed):
         form = self.form("smallest distance from the front limit", f"{limit} - {position}")
         signals = [f"{self.weft}.travel", position, limit]
         return Question("reed", [form], signals, [self.clearance, f"{self.belt}.idle_travel"])
+
+    def conditions(self, run: Wired) -> tuple[Condition, ...]:
+        distance = ((1.0, f"{self.reed}.front_limit"), (-1.0, f"{self.reed}.position"))
+        return (Always((self.outside, Linear(distance, -self.clearance))),)
 
 
 class _Transfer(Claim, kind=False):
@@ -120,6 +138,11 @@ class TransferSpeed(_Transfer):
         numbers = (self.at_most, f"{self.transfer}.needed_overlap")
         form = self.form("highest relative speed of the heads", signal)
         return Question("transfer_speed", [form], signals, numbers)
+
+    def conditions(self, run: Wired) -> tuple[Condition, ...]:
+        overlap, speed = f"{self.transfer}.overlap", f"{self.transfer}.closing_velocity"
+        apart = Linear(((1.0, f"{self.transfer}.needed_overlap"), (-1.0, overlap)))
+        return tuple(Always((apart, Linear(((side, speed),), self.at_most))) for side in (1.0, -1.0))
 
 
 class NipHolds(Claim):
@@ -171,3 +194,9 @@ class LocksInTime(Claim):
         ]
         signals = [f"{self.lock}.speed_limit", f"{self.lock}.in_time", margin]
         return Question("locks", forms, [*signals, velocity], [0.0])
+
+    def conditions(self, run: Wired) -> tuple[Condition, ...]:
+        if not (velocity := self._velocity(run)):
+            return super().conditions(run)
+        limit = f"{self.lock}.speed_limit"
+        return tuple(Always((Linear(((1.0, limit), (side, velocity))),)) for side in (1.0, -1.0))

@@ -1,6 +1,9 @@
 """The verdict at a glance, then each claim with how far it is from its bound, and where."""
 
+from collections.abc import Sequence
+
 from ..traces import Trace, Verdict
+from ..traces.comparing import paired
 from ..traces.verdict import FAILS, UNDECIDED
 from ..traces.verdict import outcome as counted
 from .section import Section, Subject, labels
@@ -8,19 +11,34 @@ from .templates import template
 
 
 def section(subject: Subject) -> Section:
-    """The claims of every trace: first all outcomes, then all tables."""
+    """The claims of every trace: first the outcomes, then one table with the verdicts side by side."""
     several = len(subject.traces) > 1
     runs = [
         {
             "label": label if several else "",
-            "outcome": outcome(trace.verdicts, trace.judged),
+            "outcome": (holding if several else outcome)(trace.verdicts, trace.judged),
             "word": _word(trace),
-            "rows": [(each, _distance(each), subject.position(each)) for each in trace.verdicts],
         }
         for label, trace in zip(labels(subject.traces), subject.traces, strict=True)
     ]
-    html = template("claims.html.j2").render(runs=runs)
+    rows = [
+        [each if each is None else (each, _distance(each), subject.position(each)) for each in row]
+        for row in side_by_side([trace.verdicts for trace in subject.traces])
+    ]
+    html = template("claims.html.j2").render(runs=runs, rows=rows)
     return Section("claims", "Claims", html, ("claims.js",), of_first=False)
+
+
+def side_by_side(runs: Sequence[Sequence[Verdict]]) -> list[list[Verdict | None]]:
+    """Return a row for each claim: its verdict in each run, or None where a run does not have the claim."""
+    rows: list[list[Verdict | None]] = []
+    for number, verdicts in enumerate(runs):
+        known = [next(each for each in row if each is not None) for row in rows]
+        for place, (_, verdict) in enumerate(paired(known, verdicts)):
+            if place == len(rows):
+                rows.append([None] * number)
+            rows[place].append(verdict)
+    return rows
 
 
 def _word(trace: Trace) -> str:
@@ -38,6 +56,13 @@ def outcome(verdicts: list[Verdict], judged: bool) -> str:
     if not all(verdicts):
         return counted(verdicts)
     return "The claim holds" if len(verdicts) == 1 else f"All {len(verdicts)} claims hold"
+
+
+def holding(verdicts: list[Verdict], judged: bool) -> str:
+    """The number of claims that hold, in a few words, to be read beside other runs."""
+    if not judged or all(verdicts):
+        return outcome(verdicts, judged).lower()
+    return f"{sum(map(bool, verdicts))} of {len(verdicts)} claims hold"
 
 
 def _distance(verdict: Verdict) -> str:

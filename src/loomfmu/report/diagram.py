@@ -25,6 +25,7 @@ MARKS = {
     "worst value of a claim that holds": "holds",
     "worst value of a claim that fails or is undecided": "fails",
 }
+MOST_NAMED = 9  # rings of the round diagram on a narrow screen
 MOST_DRAWN = 24  # revolutions that differ, in one report
 
 
@@ -52,11 +53,12 @@ def section(subject: Subject) -> Section | None:
     drawn: list[Revolution] = []
     marks: list[list[Mark]] = []
     shown: dict[int, int | None] = {}
+    first = revolution_of(subject.start, occasions.numbers)
     for revolution in occasions.revolutions():
         its = marks_in(subject.trace.verdicts, revolution.number)
         same = (k for k, other in enumerate(drawn) if revolution.same(other) and marks[k] == its)
         place = next(same, None)
-        if place is None and len(drawn) < MOST_DRAWN:
+        if place is None and (len(drawn) < MOST_DRAWN or revolution.number == first):
             place = len(drawn)
             drawn.append(revolution)
             marks.append(its)
@@ -80,6 +82,9 @@ def section(subject: Subject) -> Section | None:
         straight=[svg(each) for each in drawings],
         round=[svg(round_(occasions.rows, each, its)) for each, its in zip(drawn, marks, strict=True)],
         tables=[table(occasions.rows, each) for each in drawn],
+        first=first,
+        shown=shown,
+        crowded=len(occasions.rows) > MOST_NAMED,
         numbers=[[n for n, place in shown.items() if place == k] for k in range(len(drawn))],
         legend=_legend(occasions.rows, None if subject.live else drawings),
         coarse=math.degrees(subject.gap) if subject.gap > COARSE else 0.0,
@@ -112,7 +117,7 @@ def write(
     if reason := _not_drawn(subject, occasions):
         raise LoomfmuError(f"{trace.given}: there is no timing diagram, as {reason}")
     numbers = occasions.numbers
-    number = _usual(trace, subject, numbers) if revolution is None else revolution
+    number = _usual(subject, numbers) if revolution is None else revolution
     if number not in numbers:
         raise LoomfmuError(f"revolution = {number} is outside [{numbers[0]}, {numbers[-1]}] of {trace.given}")
     its, marks = occasions.revolution(number), marks_in(trace.verdicts, number)
@@ -127,14 +132,16 @@ def write(
     return write_file(output, file(drawing, size, output.suffix, title), kind, [trace.path], overwrite)
 
 
-def _usual(trace: Trace, subject: Subject, numbers: range) -> int:
+def _usual(subject: Subject, numbers: range) -> int:
     """The revolution of the worst failure; the last whole one where all claims hold."""
-    failures = [each for each in trace.verdicts if not each and each.revolution in numbers]
-    if not failures:
+    if subject.worst is None or subject.worst:
         return max(numbers[0], int(subject.positions[-1] / TURN + 1e-9))
-    # one that fails comes before one that is undecided, one with a distance before one without
-    worst = min(failures, key=lambda each: (not each.decided, math.isnan(each.away), each.away))
-    return int(worst.revolution or numbers[0])
+    return revolution_of(subject.start, numbers)
+
+
+def revolution_of(position: float, numbers: range) -> int:
+    """Return the number of the revolution that a position is in, among those of a run."""
+    return min(max(int(position / TURN + 1e-9) + 1, numbers[0]), numbers[-1])
 
 
 def _not_drawn(subject: Subject, occasions: Occasions) -> str:

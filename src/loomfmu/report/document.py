@@ -103,10 +103,11 @@ def assembled(
 
 
 def _axis(subject: Subject) -> dict[str, Any]:
-    """Return the axis of the cursor: a few positions with their times."""
+    """Return the axis of the cursor: a few positions with their times, and where it starts."""
     places = spread(len(subject.positions), CURSOR_POINTS)
     return {
         "turns": subject.turns,
         "positions": subject.positions[places],
         "times": subject.trace.time[places],
+        "start": subject.start,
     }

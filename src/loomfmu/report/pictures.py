@@ -3,15 +3,16 @@
 import math
 from collections.abc import Iterable, Sequence
 from fnmatch import fnmatchcase
-from functools import partial
 from io import BytesIO
 from pathlib import Path
+from textwrap import fill
 from typing import Any
 
 from .. import units
 from ..errors import LoomfmuError, listed
 from ..files import Kind, check_target, starts_with, write_file
-from ..traces import Trace, plotting
+from ..traces import Trace, Verdict, plotting
+from .extents import extent
 from .section import labels
 
 MAKER = "loomfmu"  # that a picture of ours names
@@ -34,8 +35,9 @@ ABOUT: dict[str, dict[str, str | None]] = {
     ".pdf": {"CreationDate": None, "Creator": MAKER},
     ".png": {"Software": MAKER},
 }
-HELD = ("lowest", "highest")  # roles of the extremes of a signal that its component holds
 BOUND = "#1a1a1a"
+DOTS = 200  # of an inch
+LETTERS = 85  # of a line of the title
 WIDTH, PANEL, REST = 8.0, 2.6, 0.6  # of a picture of one panel or more [in]
 
 
@@ -65,7 +67,7 @@ def content(figure: Any, suffix: str, title: str) -> bytes:
     """A figure of matplotlib as the content of a file, the same whenever it is drawn."""
     drawn = BytesIO()
     with plotting.fixed_style(**{"svg.hashsalt": "loomfmu"}):  # else the names within an SVG are random
-        figure.savefig(drawn, format=suffix[1:], dpi=200, metadata={"Title": title, **ABOUT[suffix]})
+        figure.savefig(drawn, format=suffix[1:], dpi=DOTS, metadata={"Title": title, **ABOUT[suffix]})
     return drawn.getvalue()
 
 
@@ -77,6 +79,9 @@ def plot(
     fold: bool = False,
     overwrite: bool = False,
     ylim: str | None = None,
+    start: str | None = None,
+    end: str | None = None,
+    revolution: int | None = None,
 ) -> Path:
     """Write a picture of signals, a panel for each unit, and return its path.
 
@@ -87,7 +92,11 @@ def plot(
         over: `"angle"` or `"time"`; the shaft's angle if a shaft turns, by default
         fold: lay the revolutions over one another, at 0 to 360 deg
         overwrite: also replace a file that is not such a picture
-        ylim: the range that is drawn, such as "0..1" or "0 mm..50 mm"; of signals in one panel
+        ylim: the range that is drawn, such as "0..1" or "0 mm..50 mm"; of signals in one panel. By
+            default that of the values, or the part around the bound of a claim
+        start: where the axis begins, such as "90 deg" or "20 ms"; a plain number is in deg, or in s over time
+        end: where it ends
+        revolution: the only one that is drawn, counted from 1
 
     Raises:
         LoomfmuError: a signal is not recorded, no shaft turns, a range does not fit the signals, the file
@@ -106,7 +115,9 @@ def plot(
     named = list(dict.fromkeys(each for name in signals for each in _named(traces[0], name)))
     panels = _panels(traces[0], named)
     limits = None if ylim is None else _limits(ylim, traces[0], panels)
-    return save(_figure(traces, panels, over, fold, title, limits), path, title, inputs, overwrite)
+    shown = extent(traces[0], over, fold, start, end, revolution)
+    figure = _figure(traces, panels, over, fold, title, limits, shown)
+    return save(figure, path, title, inputs, overwrite)
 
 
 def _title(traces: Sequence[Trace]) -> str:
@@ -155,16 +166,17 @@ def _check_shown(limits: tuple[float, float], values: tuple[float, float], name:
         raise LoomfmuError(f"ylim: no value of {name} is within; they are {ends}")
 
 
-def _bounds(trace: Trace, names: Sequence[str]) -> dict[str, float]:
-    """The bounds of the claims on signals, or on their held extremes, in the unit that is shown."""
-    judged = {each: name for name in names for each in (name, *map(partial(trace.beside, name), HELD))}
-    return {
-        f"bound {each.shown(each.bound)}": each.bound / trace.displayed(judged[each.signal])[0]
+def _bounds(trace: Trace, names: Sequence[str]) -> list[Verdict]:
+    """The verdicts whose bounds are drawn: those on the signals, or on their held extremes."""
+    return [
+        each
         for each in trace.verdicts
-        if each.signal in judged
-        and each.unit == trace.unit(judged[each.signal])
-        and math.isfinite(each.bound)
-    }
+        if math.isfinite(each.bound)
+        and (
+            name := next((n for n in (each.signal, plotting.curve_of(trace, each.signal)) if n in names), "")
+        )
+        and each.unit == trace.unit(name)
+    ]
 
 
 @plotting.fixed_style()
@@ -175,6 +187,7 @@ def _figure(
     fold: bool,
     title: str,
     limits: tuple[float, float] | None,
+    shown: plotting.Extent | None,
 ) -> Any:
     figure = plotting.figure((WIDTH, PANEL * len(panels) + REST))
     all_axes = figure.subplots(len(panels), sharex=True, squeeze=False)[:, 0]
@@ -184,16 +197,32 @@ def _figure(
             for name in names
             for trace, label in zip(traces, labels(traces), strict=True)
         ]
-        plotting.draw(axes, curves, over, fold)
+        plotting.draw(axes, curves, over, fold, shown)
         if limits:
             _check_shown(limits, axes.dataLim.intervaly, names[0])
-        bounds = _bounds(traces[0], names)
-        for text, bound in bounds.items():
-            axes.axhline(bound, color=BOUND, linestyle=":", linewidth=1.5, label=text)
-        if bounds:
-            axes.legend(frameon=False)
-        if limits:
-            axes.set_ylim(limits)
+        _judge(axes, _bounds(traces[0], names), limits)
         axes.label_outer()
-    figure.suptitle(title, fontsize=11)
+    figure.suptitle("\n".join(fill(each, LETTERS) for each in title.split("\n")), fontsize=11)
     return figure
+
+
+def _judge(axes: Any, verdicts: Sequence[Verdict], limits: tuple[float, float] | None) -> None:
+    """Draw bounds with their failing sides, and choose the range around them where none is given."""
+    low, high = limits or axes.get_ylim()
+    lowest, highest = axes.dataLim.intervaly
+    if verdicts and not limits and math.isfinite(lowest):
+        low, high = plotting.around(lowest, highest, verdicts)
+    axes.set_ylim(low, high)
+    ends = ("up", highest, highest > high), ("down", lowest, lowest < low)
+    beyond = [f"{way} to {float(f'{end:.4g}'):.10g}" for way, end, hidden in ends if hidden]
+    if beyond and not limits:
+        told = f"not all is drawn: values go {' and '.join(beyond)}"
+        axes.text(1.0, 1.01, told, transform=axes.transAxes, ha="right", va="bottom", fontsize=8)
+    for text, each in {f"bound {each.shown(each.bound)}": each for each in verdicts}.items():
+        bound = each.displayed(each.bound)
+        axes.axhline(bound, color=BOUND, linestyle=":", linewidth=1.5, label=text)
+        if each.sense:
+            side = (low, min(bound, high)) if each.sense > 0 else (max(bound, low), high)
+            axes.axhspan(*side, color=plotting.FAILING, linewidth=0, zorder=0, label="fails")
+    if verdicts:
+        axes.legend()

@@ -13,8 +13,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..physics.belt import NO_LIMIT
 from ..traces import Trace, Verdict
 from ..traces.excerpt import READ
+from ..traces.plotting import SPEED, curve_of, known
 from .section import Section, Subject, labels, spread
 from .templates import template
 
@@ -43,13 +45,13 @@ def outline(trace: Trace, signal: str, points: int) -> Outline:
     parts, start, last, kind = [], 0, math.nan, "f"
     for block in trace.blocks(signal, size * max(1, READ // size)):
         kind = block.dtype.kind
-        values = block.astype(np.float64)
+        values = known(trace, signal, block)
         picked = extremes(values, size)
         parts.append((picked + start, values[picked]))
         start, last = start + len(values), float(values[-1])
     places, values = (np.concatenate(column) for column in zip(*parts, strict=True))
-    known = values[~np.isnan(values)]
-    low, high = (float(known.min()), float(known.max())) if len(known) else (math.nan, math.nan)
+    found = values[~np.isnan(values)]
+    low, high = (float(found.min()), float(found.max())) if len(found) else (math.nan, math.nan)
     kept = bends(values)
     return Outline(places[kept], values[kept], low, high, last, kind == "f")
 
@@ -65,7 +67,8 @@ def extremes(values: Floats, size: int) -> NDArray[np.int64]:
     gaps = np.isnan(padded)
     lowest = starts + np.where(gaps, np.inf, padded).argmin(axis=1)
     highest = starts + np.where(gaps, -np.inf, padded).argmax(axis=1)
-    return np.unique(np.concatenate([[0], lowest, highest, [len(values) - 1]]))
+    edges = np.flatnonzero(np.diff(np.isnan(values)))  # so that no line crosses a gap
+    return np.unique(np.concatenate([[0], lowest, highest, edges, edges + 1, [len(values) - 1]]))
 
 
 def bends(values: Floats) -> NDArray[np.int64]:
@@ -85,12 +88,14 @@ def section(subject: Subject) -> Section | None:
     if not names:
         return None
     verdicts = subject.trace.verdicts
-    claimed = [name for name in dict.fromkeys(verdict.signal for verdict in verdicts) if name in names]
+    judged = [curve_of(subject.trace, verdict.signal) for verdict in verdicts]
+    claimed = [name for name in dict.fromkeys(judged) if name in names]
     finer = _points(subject, claimed)
     coarser = _points(subject, [name for name in names if name not in claimed])
     rows, signals = [], {}
     for name in names:
-        row, signals[name] = _signal(subject, name, verdicts, finer if name in claimed else coarser)
+        its = [each for each, curve in zip(verdicts, judged, strict=True) if name in (each.signal, curve)]
+        row, signals[name] = _signal(subject, name, its, finer if name in claimed else coarser)
         rows.append(row | {"chosen": name in claimed})
     names_of_curves = LIVE if subject.live else labels(subject.traces)
     along = [_along(subject, trace) for trace in subject.traces]
@@ -135,7 +140,8 @@ def _signal(
         along = trace.shaft_angle if trace.turns else trace.time
         curve = [_packed(along[found.places]), _packed(found.values / factor)]
         drawn += [None] * len(LIVE) if subject.live else [curve]
-        numbers = (f"{value / factor:.6g}" for value in (found.lowest, found.highest, found.last))
+        ends = (found.lowest, found.highest, found.last)
+        numbers = ("\u2013" if math.isnan(value) else f"{value / factor:.6g}" for value in ends)
         summaries.append((label, *numbers))
     instance, _, variable = name.partition(".")
     about = source.description(name)
@@ -148,14 +154,22 @@ def _signal(
         "summaries": summaries,
     }
     bounds = [
-        {"value": each.bound / factor, "text": f"bound {each.shown(each.bound)}", "holds": each.holds}
+        {
+            "value": each.bound / factor,
+            "text": f"bound {each.shown(each.bound)}",
+            "holds": each.holds,
+            "sense": each.sense,
+            "worst": each.worst / factor,
+            "at": subject.position(each),
+        }
         for each in verdicts
-        if each.signal == name and each.unit == source.unit(name) and math.isfinite(each.bound)
+        if each.unit == source.unit(name) and math.isfinite(each.bound)
     ]
     return row, {
         "unit": row["unit"],
         "about": about,
         "step": not continuous,
+        "free": NO_LIMIT / factor if source.unit(name) == SPEED else None,
         "bounds": bounds,
         "curves": drawn,
     }

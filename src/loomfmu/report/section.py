@@ -14,6 +14,7 @@ from ..traces import Trace, Verdict
 from .templates import text
 
 TURN = 2.0 * math.pi
+USUAL = math.radians(100.0)  # where a belt without guide hooks is pressed most
 COARSEST = math.radians(10.0)  # between samples: beyond, neither motions nor intervals can be shown
 
 
@@ -106,6 +107,26 @@ class Subject:
     def gap(self) -> float:
         """Largest distance between samples, as a position."""
         return float(np.max(np.diff(self.positions), initial=0.0))
+
+    @cached_property
+    def worst(self) -> Verdict | None:
+        """Return the verdict that matters most, of those of any trace that have a place; None without one.
+
+        One that fails comes before one that is undecided, and that before one that holds; then the one
+        nearest to its bound or farthest beyond it, one without a distance last.
+        """
+        placed = (each for trace in self.traces for each in trace.verdicts if self.position(each) is not None)
+        order = lambda each: (each.holds, not each.decided, math.isnan(each.away), each.away)  # noqa: E731
+        return min(placed, key=order, default=None)
+
+    @cached_property
+    def start(self) -> float:
+        """The position at which the page opens: that of the worst verdict, else 100 deg or the middle."""
+        first, last = (float(self.positions[place]) for place in (0, -1))
+        place = None if self.worst is None else self.position(self.worst)
+        if place is None:
+            place = first + USUAL if self.turns else 0.5 * (first + last)
+        return min(max(place, first), last)
 
     def position(self, verdict: Verdict) -> float | None:
         """Return the position of a claim's worst value, or None if it has none."""

@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 from numpy.typing import NDArray
 
 from .. import units
 from ..files import PICTURE, write_file
-from ..traces.plotting import fixed_style
+from ..traces.plotting import COLOURS, fixed_style
 from .axes import Axis
 from .plan import SweepPlan
 from .ranking import distance
@@ -23,20 +24,17 @@ from .varied import labelled
 
 Floats = NDArray[np.float64]
 
-STYLE: Any = {
-    "font.family": "DejaVu Sans",
-    "font.size": 11,
-    "text.parse_math": False,
-    "legend.frameon": False,
-}
+LINES, HATCH = "#ffffff", "///"  # over the side where a claim fails
+STYLE: Any = {"font.size": 11, "axes.grid": False, "hatch.color": LINES, "hatch.linewidth": 0.7}
+DOTS = 200  # of an inch, as in all pictures
 NO_RESULT = "#d0d0d0"
-RED = "#D55E00"
+ORANGE = COLOURS[1]
 # of limits: a later one is thinner, so that both are seen where they coincide
 LIMITS: Any = (
     {"color": "black", "linestyle": "-", "linewidth": 5.0},
-    {"color": RED, "linestyle": "--", "linewidth": 2.5},
-    {"color": "#E69F00", "linestyle": ":", "linewidth": 2.5},
-    {"color": "#CC79A7", "linestyle": "-.", "linewidth": 1.5},
+    {"color": ORANGE, "linestyle": "--", "linewidth": 2.5},
+    {"color": COLOURS[4], "linestyle": ":", "linewidth": 2.5},
+    {"color": COLOURS[3], "linestyle": "-.", "linewidth": 1.5},
 )
 LEVELS = 14
 TITLE, LEGEND = 80, 95  # letters in a line that is as wide as the picture
@@ -72,6 +70,7 @@ class _Scale:
         return np.exp(edges) if self.logarithmic else edges
 
 
+@fixed_style(**STYLE)
 def draw(plan: SweepPlan, table: Any, path: Path) -> Path | None:
     """Draw the map of a plan; nothing if no row has a value there."""
     assert plan.map is not None
@@ -88,15 +87,14 @@ def draw(plan: SweepPlan, table: Any, path: Path) -> Path | None:
     x = _scale(plan, table, request.x, chosen)
     y = _scale(plan, table, request.y, chosen) if request.y is not None else None
     drawn = [axis for axis in plan.axes if axis.key in (request.x, request.y)]
-    with fixed_style(**STYLE):
-        if any(axis.sampled for axis in drawn):
-            picture.scatter(x, y)
-        elif y is not None:
-            picture.field(x, y)
-        else:
-            rest = [axis for axis in plan.axes if axis not in drawn and axis.key not in request.at]
-            picture.lines(x, _scale(plan, table, rest[0].key, chosen) if rest else None)
-        picture.save(path)
+    if any(axis.sampled for axis in drawn):
+        picture.scatter(x, y)
+    elif y is not None:
+        picture.field(x, y)
+    else:
+        rest = [axis for axis in plan.axes if axis not in drawn and axis.key not in request.at]
+        picture.lines(x, _scale(plan, table, rest[0].key, chosen) if rest else None)
+    picture.save(path)
     return path
 
 
@@ -121,9 +119,9 @@ class _Picture:
         self.label = label
         self.distances = distances
         self.failing = np.any([each > 0.0 for _claim, each in distances] or [values != values], axis=0)
-        self.figure = Figure(figsize=(8.0, 5.5), dpi=100, layout="constrained")
+        self.figure = Figure(figsize=(8.0, 5.5), layout="constrained")
         self.axes = self.figure.subplots()
-        self.handles: list[Line2D] = []
+        self.handles: list[Line2D | Patch] = []
         picked = [
             f"{axis.key} = {axis.varied.show(plan.map.at[axis.key])}"
             for axis in plan.axes
@@ -137,7 +135,7 @@ class _Picture:
         if self.handles:
             self.figure.legend(handles=self.handles, loc="outside lower center", fontsize=9)
         drawn = BytesIO()
-        self.figure.savefig(drawn, format="png", metadata={"Software": None})
+        self.figure.savefig(drawn, format="png", dpi=DOTS, metadata={"Software": None})
         write_file(path, drawn.getvalue(), PICTURE)
 
     # ---- two axes of a grid
@@ -160,9 +158,27 @@ class _Picture:
                 style = LIMITS[number % len(LIMITS)]
                 (self._boundary if smooth else self._edges)(x, y, beyond, style)
                 self._legend(f"{claim}: limit", **style)
+        self._hatch(x, y, smooth)
         if np.isnan(grid).any():
             self._legend("could not be run", color=NO_RESULT, linewidth=8)
         self._ticks(x, y)
+
+    def _hatch(self, x: _Scale, y: _Scale, smooth: bool) -> None:
+        """Hatch the side where a claim fails."""
+        if not self.failing.any():
+            return
+        grids = [self._on_grid(_crossing(distances), x, y) for _claim, distances in self.distances]
+        most = [np.max(np.abs(grid), initial=0.0, where=np.isfinite(grid)) or 1.0 for grid in grids]
+        worst = np.fmax.reduce([grid / scale for grid, scale in zip(grids, most, strict=True)])
+        if smooth:
+            beyond = np.ma.masked_invalid(worst)
+            self.axes.contourf(x.places, y.places, beyond, levels=[0.0, 2.0], colors="none", hatches=[HATCH])
+        else:
+            fails = np.ma.masked_where(~(worst > 0.0), worst)
+            self.axes.pcolor(
+                x.edges, y.edges, fails, facecolor="none", edgecolor=LINES, hatch=HATCH, linewidth=0
+            )
+        self.handles.append(Patch(facecolor="#8c8c8c", edgecolor=LINES, hatch=HATCH, label="a claim fails"))
 
     def _on_grid(self, values: Floats, x: _Scale, y: _Scale) -> Floats:
         grid = np.full((len(y.places), len(x.places)), np.nan)
@@ -223,8 +239,8 @@ class _Picture:
     def _mark(self, x: Floats, y: Floats) -> None:
         """Crosses where a claim fails."""
         if self.failing.any():
-            self.axes.plot(x[self.failing], y[self.failing], "x", color=RED, markersize=7, zorder=3)
-            self._legend("a claim fails", color=RED, marker="x", linestyle="none")
+            self.axes.plot(x[self.failing], y[self.failing], "x", color=ORANGE, markersize=7, zorder=3)
+            self._legend("a claim fails", color=ORANGE, marker="x", linestyle="none")
 
     # ---- a sample
 

@@ -221,7 +221,7 @@ def _difference(meeting: Meeting, signal: str, tolerance: Tolerance) -> Differen
 
 def _claims(first: Trace, second: Trace, tolerance: Tolerance) -> Iterator[Change]:
     """Claims that only one run has or judged, and those with another outcome."""
-    for pair in _paired(first.verdicts, second.verdicts):
+    for pair in paired(first.verdicts, second.verdicts):
         known = [each for each in pair if each is not None]
         named = len({each.signal for each in known}) > 1
         # a worst frame of several is not a recorded signal, and may be another one in each run
@@ -231,10 +231,10 @@ def _claims(first: Trace, second: Trace, tolerance: Tolerance) -> Iterator[Chang
             yield Change("claim", known[0].claim, *outcomes)
 
 
-def _paired(
+def paired(
     first: Sequence[Verdict], second: Sequence[Verdict]
 ) -> Iterator[tuple[Verdict | None, Verdict | None]]:
-    """The verdicts on the same claim: those of one text and signal, of the others those of one text."""
+    """Yield the verdicts on the same claim: those of one text and signal, of the others those of one text."""
     found: dict[int, Verdict] = {}
     left = dict(enumerate(second))
     for wanted in (("claim", "signal"), ("claim",)):

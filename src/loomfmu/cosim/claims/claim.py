@@ -8,6 +8,7 @@ from typing import ClassVar, NamedTuple, dataclass_transform
 
 from ...traces import Signals, Verdict
 from .arguments import Argument, Name, argument, argument_of
+from .conditions import Condition, Unprovable
 from .judging import Form, Question, run_of
 from .movers import Wired
 
@@ -81,6 +82,10 @@ class Claim(ABC):
     @abstractmethod
     def question(self, trace: Signals) -> Question:
         """Return the rule by which it is judged, with the signals and numbers that this takes of a run."""
+
+    def conditions(self, run: Wired) -> tuple[Condition, ...]:
+        """Return what must be so at every shaft angle. Raises Unprovable where more than that matters."""
+        raise Unprovable("what it judges depends on the run so far, not on the shaft angle alone")
 
     def form(self, text: str, signal: str) -> Form:
         """Return a verdict's form with this text on a signal, in the claim's own unit."""

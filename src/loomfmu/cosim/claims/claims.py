@@ -19,6 +19,7 @@ from ...traces import Signals, Verdict
 from ..standard import standard
 from .arguments import Bound, Edges, Flag, Name, Window, argument
 from .claim import AT_LEAST, AT_MOST, LANDINGS, Claim
+from .conditions import Condition, above, present
 from .judging import Form, Question, needs_shaft
 from .movers import Wired
 
@@ -62,6 +63,10 @@ class Bounded(Claim, kind=False):
 
     def extremes(self) -> list[tuple[str, float]]:
         return [(self.signal, self.sense)]
+
+    def conditions(self, run: Wired) -> tuple[Condition, ...]:
+        signal = present(self.signal, run, self.sense)
+        return (above(signal, self.bound, self.sense, self.window),)
 
 
 class Above(Bounded):

@@ -21,6 +21,19 @@ ARITHMETIC = ("-O2", "-ffp-contract=off", "-fwrapv")
 FLAGS = ("-shared", "-std=c99", *ARITHMETIC, "-g0", "-s", "-fno-sanitize=all")
 # a module of WebAssembly without imports; it exports what its source says
 MODULE = ("wasm32-wasi", "-mexec-model=reactor", "-std=c99", *ARITHMETIC, "-g0", "-s", "-fno-sanitize=all")
+BOXES = (
+    "-shared",
+    "-std=c++17",
+    "-fno-exceptions",
+    "-fno-rtti",
+    "-nostdlib++",
+    *ARITHMETIC,
+    "-g0",
+    "-s",
+    "-fno-sanitize=all",
+    "-fPIC",
+    "-Wno-address-of-temporary",
+)
 MINGW = "mingw-w64.txt"  # the licence of what the compiler links into a DLL beside our own
 
 # two more than cores: some wait for one that makes the system's libraries for the first time
@@ -47,6 +60,16 @@ def web_assembly(source: str, code: dict[str, str]) -> bytes:
         output = Path(source).with_suffix(".wasm")
         _call([*MODULE, "-o", str(output), source], Path(directory), output.stem)
         return (Path(directory) / output).read_bytes()
+
+
+def of_boxes(source: str, code: dict[str, str]) -> bytes:
+    """A file of C++ that uses libm alone, as a shared library for this machine. Raises as `library`."""
+    with tempfile.TemporaryDirectory(prefix="loomfmu-") as name:
+        directory, output = Path(name), Path(f"{Path(source).stem}{HERE.suffix}")
+        for file, text in code.items():
+            (directory / file).write_text(text, encoding="utf-8")
+        _call([*HERE.targets, *BOXES, "-o", str(output), source], directory, output.stem)
+        return (directory / output).read_bytes()
 
 
 def mingw_licence() -> bytes:

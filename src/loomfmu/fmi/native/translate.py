@@ -8,8 +8,8 @@ import ast
 import io
 import math
 import tokenize
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import groupby
 from pathlib import Path
@@ -23,6 +23,7 @@ from .c_code import TYPES, Untranslatable, c_name, comment, literal, of_self
 from .c_numbers import DUAL, PLAIN, Numbers
 from .c_program import Program
 from .c_scope import Scope
+from .slicing import sliced
 
 ENTRIES = ("initialize", "step")  # what the shell calls
 INCLUDES = '#include "component.h"\n#include "python_arithmetic.h"\n'
@@ -51,6 +52,8 @@ class Written:
 
     struct: str
     functions: str
+    changes: Mapping[str, frozenset[str]] = field(default_factory=dict)
+    """The variables that each method changes, those that it calls included."""
 
 
 @dataclass(frozen=True)
@@ -106,6 +109,15 @@ def translate(component: type[Component]) -> Translation:
         return _done[component]
 
 
+def translate_slice(
+    component: type[Component], wanted: Iterable[str], settings: Mapping[str, Any]
+) -> Written:
+    """Return the C of all that some variables depend on with some settings. Raises Untranslatable."""
+    with _one_at_a_time:
+        tree = sliced(ast.parse(source.flatten(component)), ENTRIES, wanted, settings)
+        return _written(component, tree, {}, PLAIN)
+
+
 def _translated(component: type[Component]) -> Translation:
     text = source.flatten(component)
     tree = ast.parse(text)
@@ -143,7 +155,7 @@ def _written(
     structs, prototypes, definitions = Program(scope, _functions(tree.body), methods, comments).text(*ENTRIES)
     start = f"{_start(component)}\n" if numbers is PLAIN else ""
     functions = "\n\n".join(part for part in (structs, prototypes, start + definitions) if part)
-    return Written(_struct(component, numbers), functions)
+    return Written(_struct(component, numbers), functions, scope.changes)
 
 
 def _functions(body: list[ast.stmt]) -> dict[str, ast.FunctionDef]:

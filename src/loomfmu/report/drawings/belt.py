@@ -217,7 +217,7 @@ def between(tracks: Tracks, belt: Belt) -> Figure:
         title("Belt between guide and head", belt.name, "belt"),
         f"The free section of the belt between its guide and the rapier head{does}",
         [Value("free length", belt.outside, "mm"), Value("deflection", belt.deflection, "mm")],
-        f"{shape} The deflection is not exaggerated. Red: outside the guide and compressed.",
+        f"{shape} The deflection is not exaggerated. Dark orange: outside the guide and compressed.",
     )
 
 

@@ -78,7 +78,9 @@ def drive(tracks: Tracks, name: str) -> Figure | None:
         + (" a four-bar C, D, K, G," if joints else "")
         + " a sector gear and the rapier wheel, on which the belt is wound.",
         [Value("travel", tracks.mm(f"{name}.travel"), "mm")],
-        "Linkage and wheel are to scale; radius of the spherical linkage, gears and place of the wheel are"
+        "A is the pin of the crank and B the end of the rocker, which turns about C."
+        + (" The coupler DK moves the arm of the sector gear, which turns about G." if joints else "")
+        + " Linkage and wheel are to scale; radius of the spherical linkage, gears and place of the wheel are"
         " schematic.",
     )
 
@@ -102,6 +104,7 @@ def _wheel(sketch: Sketch, weft: WeftInsertion, name: str, at: Place, radius: fl
     sketch.line(*wound, (sketch.right, at[1] + side * radius), role="link belt")
     sketch.circle(at, SECTOR / weft.gear_ratio, "body")
     sketch.joint(at)
+    sketch.label(at[0] + 0.45 * radius, at[1] - 0.4 * side * radius, "rapier wheel")
     sketch.label(sketch.right, at[1] + side * radius, "belt", "end", (-6.0, -8.0))
 
 
@@ -117,6 +120,7 @@ def _sector(sketch: Sketch, weft: WeftInsertion, name: str, hub: Place) -> None:
     rim = [(hub[0] + SECTOR * cos(a), hub[1] + SECTOR * sin(a)) for a in np.linspace(-half, half, 25)]
     with sketch.group(turn=(turn, *hub)):
         sketch.line(hub, *rim, role="body weft", closed=True)
+    sketch.label(hub[0] + 0.52 * SECTOR, hub[1], "sector gear", shift=(0.0, 4.0))
 
 
 def _linkages(

@@ -1,6 +1,6 @@
 """The loom in motion: a drawing of each mechanism that the trace records."""
 
-from math import degrees, floor, radians
+from math import degrees, floor
 
 from ..occasions import instances
 from ..section import COARSEST, TURN, Section, Subject
@@ -22,7 +22,6 @@ DRAWN = {
     "HealdFrame": ("lift",),
     "ReedBeatUp": ("position",),
 }
-USUAL = radians(100.0)  # where a belt without guide hooks is pressed most
 
 
 def section(subject: Subject) -> Section | None:
@@ -33,27 +32,15 @@ def section(subject: Subject) -> Section | None:
         apart = f"{degrees(subject.gap):.0f}°"
         coarse = f"Not drawn: the samples are up to {apart} apart, too far to show a motion."
         return Section("motion", "The loom in motion", template("motion.html.j2").render(coarse=coarse))
-    tracks = Tracks(subject, still(subject))
+    tracks = Tracks(subject, subject.start)
     figures = _figures(tracks)
     if not figures:
         return None
     place = _place(subject, tracks.still)
     html = template("motion.html.j2").render(coarse="", place=place, figures=figures)
     moved = tracks.rules() if subject.live else tracks.data()
-    data = moved | {"still": tracks.still, "bows": shapes(tracks)}
+    data = moved | {"bows": shapes(tracks)}
     return Section("motion", "The loom in motion", html, ("motion.js",), data)
-
-
-def still(subject: Subject) -> float:
-    """Return the position of the claim nearest to its bound, or farthest beyond it; else of 100 deg."""
-    first, last = (float(subject.positions[place]) for place in (0, -1))
-    worst = [
-        (verdict.holds, verdict.distance / (abs(verdict.bound) or 1.0), position)
-        for verdict in subject.trace.verdicts
-        if (position := subject.position(verdict)) is not None
-    ]
-    place = min(worst)[2] if worst else first + USUAL if subject.turns else 0.5 * (first + last)
-    return min(max(place, first), last)
 
 
 def _figures(tracks: Tracks) -> list[Figure]:

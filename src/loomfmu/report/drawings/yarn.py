@@ -39,5 +39,6 @@ def yarn(tracks: Tracks, name: str) -> Figure:
         title("Weft from package to head", name, "yarn"),
         "The weft, drawn over its brake and eyes by the head that carries it: the giver, then the taker.",
         [Value("tension", tension, "cN"), Value("length from the brake", length, "mm")],
-        "Lengths along the yarn are to scale, and both heads move to the right. Red: the weft hangs slack.",
+        "Lengths along the yarn are to scale, and both heads move to the right."
+        " Dark orange: the weft hangs slack.",
     )

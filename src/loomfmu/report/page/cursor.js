@@ -8,9 +8,9 @@ const loomfmu = (() => {
   const axis = data("axis");
   let { positions, times } = axis, first = positions[0], last = positions[positions.length - 1];
   const slider = document.getElementById("cursor-slider"), place = document.getElementById("cursor-place");
-  const button = document.getElementById("cursor-play");
+  const button = document.getElementById("cursor-play"), pace = document.getElementById("cursor-pace");
   const listeners = [];
-  let position = first, playing = null;
+  let position = axis.start, playing = null;
 
   /* Index of the last of ascending values that is not above a value, and the share of the way to the next. */
   function locate(ascending, value) {
@@ -59,7 +59,7 @@ const loomfmu = (() => {
   }
 
   function play() {
-    const rate = axis.turns ? TURN / SECONDS_A_TURN : (last - first) / SECONDS_A_RUN;
+    const usual = axis.turns ? TURN / SECONDS_A_TURN : (last - first) / SECONDS_A_RUN;
     let before = null;
     if (position >= last) seek(first);
     button.textContent = "Pause";
@@ -68,6 +68,7 @@ const loomfmu = (() => {
     const frame = now => {
       if (before === null) before = now;
       if (now - before >= hold) {
+        const rate = usual * Number(pace.value); // it may change meanwhile
         seek(position + (hold ? 10 * step : rate * (now - before) / 1000));
         before = now;
       }

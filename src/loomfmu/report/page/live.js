@@ -64,7 +64,55 @@ loomfmu.live = (() => {
       + ` ${ms(took.all - took.run)}${late.length ? `; ${late.join(", ")} ${rest}` : ""}`;
   }
 
+  // ---- values in the address, and as text to use elsewhere
+
+  const unitOf = ({ unit }) => unit && ` ${unit}`;
+  const nameOf = (knob, value) => knob.choices.length ? knob.choices.find(([number]) => number === value)[1] : String(short(value / knob.factor));
+  const chosen = wanted => plan.knobs.map((knob, number) => [knob, values[number]]).filter(wanted);
+  const differing = () => chosen(([knob, value]) => value !== knob.start);
+  const told = () => chosen(([knob, value]) => value !== knob.start || plan.set.includes(knob.key)); // beside plan.command
+
+  /* Values that differ from the scene's stand in the address, so that a link carries them. */
+  function address() {
+    const words = differing().map(([knob, value]) => `${encodeURIComponent(knob.key)}=${encodeURIComponent(nameOf(knob, value))}`);
+    if (words.length || location.hash.includes("=")) history.replaceState(null, "", `#${words.join("&")}`);
+  }
+
+  /* Take the values of the address; what is not within its range is left as it is. */
+  function arrive() {
+    for (const [key, text] of new URLSearchParams(location.hash.slice(1))) {
+      const number = plan.knobs.findIndex(knob => knob.key === key), knob = plan.knobs[number];
+      if (!knob) continue;
+      const choice = knob.choices.find(([, name]) => name === text), value = choice ? choice[0] : Number(text) * knob.factor;
+      const room = 1e-9 * (knob.high - knob.low), whole = !knob.whole || Number.isInteger(value);
+      if (choice || (!knob.choices.length && text && whole && value >= knob.low - room && value <= knob.high + room)) values[number] = value;
+    }
+  }
+
+  const quoted = text => /^[\w.=/+-]+$/.test(text) ? text : `"${text}"`;
+  const copies = {
+    command: () => [plan.command, ...told().map(([knob, value]) => `--set ${quoted(`${knob.key}=${nameOf(knob, value)}${unitOf(knob)}`)}`)].join(" "),
+    scene: () => told().map(([knob, value]) => {
+      const [, instance, variable] = /^(.*)\.([^.]*)$/.exec(knob.key), name = nameOf(knob, value);
+      const plain = knob.choices.length ? { yes: "true", no: "false" }[name] : !knob.unit && name;
+      return `[${instance}]\n${variable} = ${plain || `"${name}${unitOf(knob)}"`}`;
+    }).join("\n\n") || "# the scene's own values",
+  };
+  form.addEventListener("click", async event => {
+    const kind = event.target.dataset.copy, copied = document.getElementById("live-copied");
+    if (!kind) return;
+    const text = copies[kind]();
+    try {
+      await navigator.clipboard.writeText(text);
+      copied.textContent = `copied:\n${text}`;
+    } catch {
+      copied.textContent = text; // to be copied by hand where the browser does not let a page do so
+    }
+  });
+
   function soon() {
+    address();
+    document.getElementById("live-copied").textContent = "";
     loomfmu.live.pace = null; // until the page shows the values
     if (waiting || !steps) return;
     waiting = true;
@@ -148,7 +196,10 @@ loomfmu.live = (() => {
     steps = loomfmu.steps(plan, wasm);
     loomfmu.live.judge = loomfmu.judge(plan.judging, plan.steps + 1, rules);
     for (const input of form.elements) input.disabled = false;
-    run();
+    run(); // with the scene's own values: claims and plots compare with them
+    arrive();
+    for (const show of shows) show();
+    if (differing().length) soon();
   });
   const changed = () => plan.knobs.flatMap((knob, number) => values[number] === knob.start ? [] : knob.targets);
   return { plan, changed, follow: (part, listener) => { listeners.set(part, listener); }, get current() { return current; } };

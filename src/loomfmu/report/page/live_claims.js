@@ -80,21 +80,13 @@ loomfmu.shownIn = ({ factor, unit }, value, digits = 7) =>
   }
 
   /* Bounds of the claims on a signal, as the plots draw them: a line for each, empty where it is undecided. */
-  loomfmu.live.bounds = name => (loomfmu.live.verdicts || []).flatMap(({ bound, holds, form }, number) => {
+  loomfmu.live.bounds = name => (loomfmu.live.verdicts || []).flatMap(({ bound, worst, holds, form, place }, number) => {
     const its = form || claims[number].forms[0];
-    if (its.signal !== name || !its.drawn) return [];
+    if ((its.signal !== name && its.curve !== name) || !its.drawn) return [];
     if (holds === null) return [{ value: null, text: "", holds }];
-    return [{ value: bound * its.factor, text: `bound ${loomfmu.shownIn(its, bound)}`, holds }];
+    const text = `bound ${loomfmu.shownIn(its, bound)}`, at = place ? place.position : null;
+    return [{ value: bound * its.factor, text, holds, sense: its.sense, worst: worst * its.factor, at }];
   });
-
-  /* Where the claim is that is nearest to its bound, or farthest beyond it; null where none is judged. */
-  loomfmu.live.worst = () => {
-    const [nearest] = (loomfmu.live.verdicts || [])
-      .filter(verdict => verdict.holds !== null && verdict.place)
-      .map(verdict => ({ verdict, away: verdict.distance / (Math.abs(verdict.bound) || 1) }))
-      .sort((one, other) => one.verdict.holds - other.verdict.holds || one.away - other.away);
-    return nearest ? nearest.verdict.place.position : null;
-  };
 
   function verdictOf(run, judge, claim) {
     const waiting = run ? claim.parts.filter(run.waits) : [];

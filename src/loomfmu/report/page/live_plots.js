@@ -7,8 +7,10 @@
   drawn.hidden = true; // there is nothing to draw before the first run
 
   function curve(of, name) {
-    const { factor } = plan.signals[name];
-    return of && !of.waits(name) && [of.positions, of.signal(name).map(value => value / factor)];
+    const { factor } = plan.signals[name], { free } = signals[name];
+    const shown = free === null ? value => value / factor
+      : value => Math.abs(value / factor - free) < 1e-9 * free ? NaN : value / factor;
+    return of && !of.waits(name) && [of.positions, of.signal(name).map(shown)];
   }
 
   /* A run that stays as it is while others are made. */
@@ -23,9 +25,13 @@
       const { factor } = plan.signals[row.dataset.name], known = run && !run.waits(row.dataset.name);
       const values = known ? run.signal(row.dataset.name) : [];
       let low = Infinity, high = -Infinity;
-      for (const value of values) { low = Math.min(low, value); high = Math.max(high, value); }
+      const { free } = signals[row.dataset.name];
+      for (const value of values) {
+        if (free !== null && Math.abs(value / factor - free) < 1e-9 * free) continue;
+        [low, high] = [Math.min(low, value), Math.max(high, value)];
+      }
       const shown = [low, high, values[values.length - 1]];
-      shown.forEach((value, k) => { row.cells[k + 1].textContent = known ? String(Number((value / factor).toPrecision(6))) : "–"; });
+      shown.forEach((value, k) => { row.cells[k + 1].textContent = known && Number.isFinite(value) ? String(Number((value / factor).toPrecision(6))) : "–"; });
     }
   }
 

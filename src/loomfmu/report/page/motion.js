@@ -1,6 +1,6 @@
 // Moves the parts of the drawings to where the keyframes have them at the cursor's position, or the run of the page.
 (() => {
-  const { first, span, tracks, bows, still, fixed } = loomfmu.data("motion"), { live } = loomfmu;
+  const { first, span, tracks, bows, fixed } = loomfmu.data("motion"), { live } = loomfmu;
   const root = document.getElementById("motion"), missing = document.getElementById("motion-missing");
   for (const track of Object.values(tracks))
     if (track.frames) track.frames = track.frames.map(steps => { let sum = 0; return steps.map(step => sum += step); });
@@ -73,11 +73,4 @@
       }
     });
   loomfmu.follow(draw);
-  // on paper the whole page stands where the cursor was moved to, else where the worst claim of this run is
-  const worst = () => live && live.worst && live.worst() !== null ? live.worst() : still;
-  let moved = false;
-  matchMedia("print").addEventListener("change", event => {
-    if (event.matches) moved = loomfmu.position === loomfmu.first;
-    if (moved) loomfmu.seek(event.matches ? worst() : loomfmu.first);
-  });
 })();

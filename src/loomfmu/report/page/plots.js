@@ -44,14 +44,55 @@
              stroke: () => colour("--ink"), grid, ticks: { ...grid, size: 5 }, ...more };
   }
 
+  /* The part of a range of values that shows how far they are from bounds: as `around` of traces/plotting.py. */
+  function around(low, high, bounds) {
+    const REACH = 10, LEAST = 0.1, known = bounds.filter(({ value, worst }) => value !== null && Number.isFinite(worst));
+    const limits = known.map(({ value }) => value);
+    const ends = known.map(({ value, worst, sense }) =>
+      value + sense * REACH * Math.max(Math.abs(worst - value), LEAST * Math.abs(value)));
+    if (known.some(({ sense }) => sense > 0)) high = Math.min(high, Math.max(...ends, ...limits));
+    if (known.some(({ sense }) => sense < 0)) low = Math.max(low, Math.min(...ends, ...limits));
+    [low, high] = [Math.min(low, ...limits), Math.max(high, ...limits)];
+    const room = 0.1 * (high - low) || 1;
+    return [low - room, high + room];
+  }
+
+  /* Shade the failing sides of bounds, and where there is no limit. */
+  function shade(plot, { signal: { bounds, free }, found }) {
+    const { ctx, bbox: { left, top, width, height } } = plot, [y, x] = [value => plot.valToPos(value, "y", true), value => plot.valToPos(value, "x", true)];
+    const within = (value, low, high) => Math.min(Math.max(value, low), high);
+    ctx.save();
+    ctx.globalAlpha = 0.15;
+    ctx.fillStyle = colour("--fails");
+    for (const { value, sense } of bounds) {
+      if (value === null || !sense) continue;
+      const edge = within(y(value), top, top + height);
+      ctx.fillRect(left, sense > 0 ? edge : top, width, sense > 0 ? top + height - edge : edge - top);
+    }
+    ctx.globalAlpha = 0.4;
+    ctx.fillStyle = colour("--line");
+    const [along, values] = found[0];
+    for (let k = 0; free !== null && k < along.length; k++) {
+      if (values[k] !== null) continue;
+      let end = k;
+      while (end + 1 < along.length && values[end + 1] === null) end++;
+      const [from, to] = [k, end].map(place => within(x(along[place]), left, left + width));
+      ctx.fillRect(from, top, to - from, height);
+      k = end;
+    }
+    ctx.restore();
+  }
+
   /* Whether values lie so far apart, all above zero, that only a logarithmic axis shows them. */
-  function wide(data) {
+  function wide(data, { bounds }) {
+    if (bounds.length) return false;
     const values = data.slice(1).flatMap(each => each.filter(value => value !== null && value !== undefined));
     const low = values.reduce((a, b) => Math.min(a, b), Infinity), high = values.reduce((a, b) => Math.max(a, b), 0);
     return low > 0 && high > 100 * low;
   }
 
-  function options(signal, width, logarithmic) {
+  function options(made, width, logarithmic) {
+    const { signal } = made;
     const stepped = uPlot.paths.stepped({ align: 1 }), path = signal.step ? { paths: stepped } : {};
     const line = { width: 1.5, points: { show: false }, pxAlign: 0 };
     const series = labels.map((label, number) => ({
@@ -59,14 +100,15 @@
       ...line, ...path }));
     const bounds = signal.bounds.map(({ text }, number) => ({
       label: text, stroke: () => colour(signal.bounds[number].holds ? "--holds" : "--fails"), dash: [3, 3], ...line }));
+    const range = signal.bounds.length && !logarithmic ? { range: (plot, low, high) => low === null ? [0, 1] : around(low, high, signal.bounds) } : {};
     const angles = over === "angle" ? { incrs: [1, 2, 5, 10, 15, 30, 60, 90, 180, 360, 720, 1800, 3600, 7200, 36000] } : {};
     return {
       width, height: HEIGHT, legend: { show: false }, series: [{}, ...series, ...bounds],
-      scales: { x: { time: false }, y: { distr: logarithmic ? 3 : 1 } },
+      scales: { x: { time: false }, y: { distr: logarithmic ? 3 : 1, ...range } },
       axes: [axis(over === "angle" ? "Shaft angle [deg]" : "Time [s]", { size: 34, ...angles }),
              axis((signal.unit && `[${signal.unit}]`) + (logarithmic ? " log." : ""), { size: 58, labelSize: 18 })],
       cursor: { x: false, y: false, points: { show: false }, drag: { x: true, y: false } },
-      hooks: { setScale: [(plot, key) => { if (key === "x" && !setting) show([plot.scales.x.min, plot.scales.x.max]); }] },
+      hooks: { drawClear: [plot => shade(plot, made)], setScale: [(plot, key) => { if (key === "x" && !setting) show([plot.scales.x.min, plot.scales.x.max]); }] },
     };
   }
 
@@ -131,8 +173,12 @@
 
   /* Draw a plot, or with other curves than before, if it is not to be made anew. */
   function render(made, fresh = true) {
-    const { found, data } = contents(made.name), logarithmic = wide(data), { about, bounds } = made.signal;
-    made.about.textContent = [about, made.signal.note, ...bounds.map(bound => bound.text)].filter(Boolean).join("; ");
+    const { found, data } = contents(made.name), logarithmic = wide(data, made.signal), { about, bounds } = made.signal;
+    const all = found.flatMap(([, values]) => values.filter(value => value !== null)), low = all.reduce((a, b) => Math.min(a, b), Infinity);
+    const high = all.reduce((a, b) => Math.max(a, b), -Infinity), [from, to] = around(low, high, bounds), short = value => Number(value.toPrecision(4));
+    const beyond = bounds.length ? [high > to && `values go up to ${short(high)}`, low < from && `values go down to ${short(low)}`] : [];
+    const free = found.some(([, values]) => made.signal.free !== null && values.includes(null));
+    made.about.textContent = [about, made.signal.note, ...bounds.map(bound => bound.text), ...beyond, free && "shaded: no limit"].filter(Boolean).join("; ");
     made.found = found;
     made.largest = found.map(([, values]) => values.reduce((most, value) => Math.max(most, Math.abs(value)), 0));
     made.stale = false;
@@ -146,7 +192,7 @@
   function begin(made, data, logarithmic) {
     if (made.plot) made.plot.destroy();
     made.logarithmic = logarithmic;
-    made.plot = new uPlot(options(made.signal, made.inside.clientWidth || 600, logarithmic), data, made.inside);
+    made.plot = new uPlot(options(made, made.inside.clientWidth || 600, logarithmic), data, made.inside);
     made.plot.over.append(made.line);
     made.plot.over.addEventListener("click", event => {
       if (made.plot.select.width > 2) return;
@@ -193,13 +239,14 @@
 
   // ---- the cursor
 
-  function valueAt({ found, largest, signal }, x) {
+  function valueAt({ found, largest, signal }, x, position) {
+    const worst = signal.bounds.find(({ at }) => at !== null && Math.abs(at - position) < 1e-9); // as the claim says it
     return found.map(([along, values], number) => {
       if (!along.length || x < along[0] - 1e-6 || x > along[along.length - 1] + 1e-6) return "–";
       const [index, share] = loomfmu.locate(along, x), next = Math.min(index + 1, values.length - 1);
       const [before, after] = [values[index], values[next]];
-      if (before === null || after === null) return "–";
-      let value = signal.step ? (share >= 1 ? after : before) : before + share * (after - before);
+      if (before === null || after === null) return signal.free === null ? "–" : "no limit";
+      let value = worst && !number ? worst.worst : signal.step ? (share >= 1 ? after : before) : before + share * (after - before);
       if (Math.abs(value) < 1e-12 * largest[number]) value = 0; // what rounding leaves of it
       return `${Number(value.toPrecision(5))}${signal.unit ? ` ${signal.unit}` : ""}`;
     }).join(" | ");
@@ -209,7 +256,7 @@
     const x = shown(traces[0], position), at = made.plot.valToPos(x, "x");
     made.line.style.transform = `translateX(${at}px)`;
     made.line.hidden = at < 0 || at > made.plot.over.clientWidth + 1;
-    made.value.textContent = valueAt(made, x);
+    made.value.textContent = valueAt(made, x, position);
   }
 
   function follow() {

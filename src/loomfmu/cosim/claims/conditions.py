@@ -1,0 +1,142 @@
+"""Conditions: a claim in terms of the shaft angle alone, without a run, for claims that can be stated so.
+
+A run shows a claim at its samples and between them; a condition says what must be so at every angle.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...components import COMPONENTS
+from ...declaring.variables import variables_of
+from ...errors import LoomfmuError
+from .arguments import Window
+from .movers import Wired
+
+Floats = NDArray[np.float64]
+
+
+class Unprovable(LoomfmuError):
+    """A claim that depends on more than the present shaft angle, or on equations that are not known."""
+
+
+@dataclass(frozen=True)
+class Linear:
+    """A sum of shares of signals and parameters, and a constant: what must not be negative, in SI."""
+
+    terms: tuple[tuple[float, str], ...]
+    constant: float = 0.0
+
+
+@dataclass(frozen=True)
+class Always:
+    """At all angles, or those of a window, or at some of every revolution, one of these is not negative."""
+
+    any_of: tuple[Linear, ...]
+    window: Window | None = None
+    angles: tuple[float, ...] = ()
+
+    @property
+    def forms(self) -> tuple[Linear, ...]:
+        """Return all that it is about."""
+        return self.any_of
+
+    def ranges(self, first: float, last: float) -> list[tuple[float, float]]:
+        """Return the ranges of the shaft angle between two angles that it is about [rad]."""
+        if self.window is None and not self.angles:
+            return [(first, last)]
+        turn, found = 2.0 * math.pi, []
+        wanted = [(angle, 0.0) for angle in self.angles]
+        if self.window is not None:
+            wanted = [(self.window.start, self.window.width)]
+        for start, width in wanted:
+            for number in range(
+                math.floor((first - start - width) / turn), math.ceil((last - start) / turn) + 1
+            ):
+                low, high = max(first, start + turn * number), min(last, start + turn * number + width)
+                if low <= high:
+                    found.append((low, high))
+        return found
+
+
+OUT, RISES, FALLS, IN, UNKNOWN = range(5)  # what a form does in a cell of angles
+
+
+@dataclass(frozen=True)
+class Spans:
+    """Whenever this stops being negative, it stays so for an angle [rad], unless the run ends before."""
+
+    inside: Linear
+    at_least: float
+
+    widest: ClassVar[float] = 0.05  # a cell of angles, at first [rad]
+    finest: ClassVar[float] = 2.0**-12  # the closest that an end of a span is looked for [rad]
+
+    @property
+    def forms(self) -> tuple[Linear, ...]:
+        """Return all that it is about."""
+        return (self.inside,)
+
+    def cells(self, first: float, last: float) -> Floats:
+        """Return the edges of cells of angles to begin with."""
+        return np.linspace(first, last, max(2, math.ceil((last - first) / self.widest)) + 1)
+
+    def doubtful(self, kinds: NDArray[np.int_], edges: Floats) -> NDArray[np.bool_]:
+        """Return the cells to bisect: those of each stretch that may be a span which is too short.
+
+        `kinds` says what `inside` does in each cell. A span is known where it only rises, then is inside,
+        then only falls. An end of the run may cut it off.
+        """
+        doubtful = np.zeros(len(kinds), dtype=bool)
+        outside = [-1, *np.flatnonzero(kinds == OUT).tolist(), len(kinds)]
+        for before, after in pairwise(outside):
+            cells = slice(before + 1, after)
+            group = kinds[cells]
+            rises, inside, falls = (int(np.sum(group == kind)) for kind in (RISES, IN, FALLS))
+            known = np.array_equal(group, [RISES] * rises + [IN] * inside + [FALLS] * falls)
+            cut = (before == -1 and not rises) or (after == len(kinds) and not falls)
+            length = float(np.diff(edges)[cells][rises : rises + inside].sum()) * (1.0 - 1e-12)
+            long_enough = cut or length >= self.at_least if inside else not (rises and falls)
+            if not (known and long_enough):
+                doubtful[cells] = group != IN
+        return doubtful
+
+
+Condition = Always | Spans
+
+
+def above(signal: str, bound: float | str, share: float = 1.0, window: Window | None = None) -> Always:
+    """Return the condition that a share of a signal is at least as large as this share of a bound."""
+    if isinstance(bound, str):
+        return Always((Linear(((share, signal), (-share, bound))),), window)
+    return Always((Linear(((share, signal),), -share * bound),), window)
+
+
+def present(signal: str, run: Wired, sense: int) -> str:
+    """Return the signal of which this one holds the lowest values, or the highest ones with -1; or itself.
+
+    Raises Unprovable for another signal with a memory, and for a truth value.
+    """
+    name, _, variable = signal.rpartition(".")
+    kind = run.fmus.get(name, "")
+    declared = {each.name: each for each in variables_of(COMPONENTS[kind])} if kind in COMPONENTS else {}
+    if variable not in declared:
+        raise Unprovable(f"the equations of {signal} are not known")
+    found = declared[variable]
+    base = found.lowest_of if sense > 0 else found.highest_of
+    if base and found.type is float:
+        return f"{name}.{base}"
+    if found.one_way and found.causality == "output" and found.variability != "fixed" and found.depends != ():
+        raise Unprovable(f"{signal} depends on the run so far")
+    return signal
+
+
+def names_of(conditions: Sequence[Condition]) -> list[str]:
+    """Return the signals and parameters that conditions are about."""
+    forms = [form for condition in conditions for form in condition.forms]
+    return list(dict.fromkeys(name for form in forms for _share, name in form.terms))

@@ -1,0 +1,1 @@
+"""`prove`: claims for all shaft angles and all values within ranges, by enclosures of the equations."""

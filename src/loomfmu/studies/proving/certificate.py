@@ -1,0 +1,48 @@
+"""Certificates: what others need to confirm a proof, without the prover and without trust in it."""
+
+import hashlib
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from ...errors import LoomfmuError
+from ...files import starts_with, write_file
+from ...fmi import source
+from .prove import Proofs
+
+FORMAT = "loomfmu proof 1"
+CERTIFICATE = starts_with("a certificate of a proof", b'{"format": "loomfmu proof', suffix=".json")
+
+
+def write(proofs: Proofs, path: Path, inputs: Sequence[Path] = (), overwrite: bool = False) -> list[str]:
+    """Write a certificate of the claims that are proven at every angle, and return their names.
+
+    Proofs over time have none. Raises LoomfmuError if there is none to certify.
+    """
+    certified = [proof for proof in proofs.claims if proof and proof.components]
+    if not certified:
+        raise LoomfmuError(f"{path} is not written: no claim that a certificate can confirm is proven")
+    scene = proofs.scene
+    told: dict[str, Any] = {
+        "format": FORMAT,
+        "name": scene.name,
+        "scene": scene.text,
+        "texts": scene.texts,
+        "overrides": scene.overrides,
+        "over": {span.key: [span.low.hex(), span.high.hex()] for span in proofs.over},
+        "equations": {
+            component.__name__: hashlib.sha256(source.flatten(component).encode()).hexdigest()
+            for proof in certified
+            for component in proof.components
+        },
+        "claims": [
+            {
+                "name": proof.claim,
+                "conditions": [[cover.tree for cover in covers] for _condition, covers in proof.covers],
+            }
+            for proof in certified
+        ],
+    }
+    write_file(path, json.dumps(told).encode(), CERTIFICATE, inputs, overwrite)
+    return [proof.claim for proof in certified]

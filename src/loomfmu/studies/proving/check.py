@@ -1,0 +1,313 @@
+"""Confirms a certificate of `prove`, without the prover: the components' own Python, run on intervals."""
+
+import ast
+import hashlib
+import json
+import math
+import tempfile
+from collections.abc import Iterator, Sequence
+from functools import partial
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...components.shaft_driven import FOLLOWING, ShaftDriven
+from ...cosim.claims.conditions import FALLS, IN, OUT, RISES, UNKNOWN, Condition, Linear, Spans, names_of
+from ...cosim.planning.pruning import prune
+from ...cosim.reading import requested
+from ...cosim.scenes import scene as scenes
+from ...cosim.scenes.graph import step_order
+from ...cosim.scenes.instances import Instance
+from ...cosim.scenes.scene import Scene
+from ...declaring.variables import MOTION, variables_of
+from ...errors import LoomfmuError
+from ...files import text_of
+from ...fmi import source
+from ...fmi.native.slicing import settings_of, sliced
+from ...fmi.native.translate import ENTRIES
+from ...sweeps.varied import varied
+from .intervals import ALL, MATH, Ends, Interval, Unknown, floor, joined, number
+
+FORMAT = "loomfmu proof 1"
+SHAFT, START = "shaft", "start_angle"
+FINER = 6  # bisections of a box that this arithmetic, which is wider, may need on top
+Box = tuple[Ends, ...]
+Numbers = dict[str, Interval]
+
+
+class Refused(LoomfmuError):
+    """A certificate that proves less than it says."""
+
+
+def check(path: str | Path) -> list[str]:
+    """Return the claims that a certificate proves, each confirmed. Raises Refused, a LoomfmuError."""
+    try:
+        told = json.loads(text_of(Path(path)))
+        if told["format"] != FORMAT:
+            raise Refused(f"{path}: format = {told['format']!r} must be {FORMAT!r}")
+        return _Check(told).confirmed
+    except Refused as error:
+        raise Refused(f"{path}: {error}") from None
+    except (ValueError, KeyError, TypeError, IndexError, AttributeError) as error:
+        raise LoomfmuError(f"{path} is no certificate of a proof: {type(error).__name__} {error}") from None
+
+
+class _Check:
+    def __init__(self, told: dict[str, Any]):
+        with tempfile.TemporaryDirectory() as folder:
+            for name, text in told["texts"].items():
+                place = (Path(folder) / name).resolve()
+                if not place.is_relative_to(Path(folder).resolve()):
+                    raise Refused(f"{name} is outside of the scene's folder")
+                place.parent.mkdir(parents=True, exist_ok=True)
+                place.write_text(text, encoding="utf-8")
+            scene = scenes.parse(told["scene"], told["name"], told["overrides"], folder)
+            self._asked = requested(scene, None, "native")
+        self._scene = scene = self._asked.scene
+        self._ends = [(float.fromhex(low), float.fromhex(high)) for low, high in told["over"].values()]
+        if not all(low < high and math.isfinite(high - low) for low, high in self._ends):
+            raise Refused("the box is empty")
+        self._sides: dict[tuple[str, ...], int] = {(SHAFT, START): 0}
+        for place, (key, ends) in enumerate(zip(told["over"], self._ends, strict=True), 1):
+            about = varied(scene, key)
+            for end in ends:  # refuses what cannot be
+                requested(scene, {key: about.setting(about.read(about.setting(end)))}, "native")
+            self._sides |= {tuple(each.split(".")): place for each in about.targets}
+        self._equations = told["equations"]
+        names = [str(table.get("name") or table["kind"]) for table in scene.claims]
+        self.confirmed = []
+        for claim in told["claims"]:
+            conditions = self._asked.claims[names.index(claim["name"])].conditions(self._asked)
+            if len(conditions) != len(claim["conditions"]):
+                raise Refused(
+                    f"{claim['name']}: {len(claim['conditions'])} conditions, not {len(conditions)}"
+                )
+            chain = _Mechanisms(scene, names_of(conditions), self._sides, self._equations)
+            for condition, covers in zip(conditions, claim["conditions"], strict=True):
+                self._check(claim["name"], condition, covers, chain)
+            self.confirmed.append(claim["name"])
+
+    def _check(self, name: str, condition: Condition, covers: Sequence[Any], chain: "_Mechanisms") -> None:
+        start = float(self._scene.instances[SHAFT].start(START) or 0.0)
+        place = self._sides.get((SHAFT, "speed"))
+        speed = float(self._scene.instances[SHAFT].start("speed") or 0.0)
+        slowest = speed if place is None else self._ends[place - 1][0]
+        if slowest <= 0.0 or self._scene.step is not None:
+            raise Refused("only forward runs by revolutions can be confirmed")
+        last = start + 2.0 * math.pi * self._scene.periods
+        if isinstance(condition, Spans):
+            (tree,) = covers
+            for box in list(_leaves(tuple(self._ends), iter(tree))):
+                if not _spans_last(chain, condition, (start, last), box):
+                    raise Refused(f"{name} is not confirmed for {_text(box)}")
+            return
+        ranges = condition.ranges(start, last)
+        if len(ranges) != len(covers):
+            raise Refused(f"{name}: {len(covers)} ranges of the shaft angle, not {len(ranges)}")
+        for angles, tree in zip(ranges, covers, strict=True):
+            for box in list(_leaves((angles, *self._ends), iter(tree))):
+                if not _holds(chain, condition.any_of, box, FINER):
+                    raise Refused(f"{name} is not confirmed for {_text(box)}")
+
+
+def _leaves(box: Box, tree: Iterator[int]) -> Iterator[Box]:
+    """Yield the boxes of a tree, which are together this one. Raises Refused if it is not whole."""
+    stack = [box]
+    while stack:
+        box = stack.pop()
+        side = next(tree, None)
+        if side is None or not isinstance(side, int) or not -1 <= side < len(box):
+            raise Refused("a box is missing")
+        if side < 0:
+            yield box
+        else:
+            low, high = box[side]
+            middle = min(max(0.5 * (low + high), low), high)
+            stack += [(*box[:side], part, *box[side + 1 :]) for part in ((middle, high), (low, middle))]
+    if next(tree, None) is not None:
+        raise Refused("there are more boxes than the box has parts")
+
+
+def _text(box: Box) -> str:
+    return ", ".join(f"{low:.6g} to {high:.6g}" for low, high in box)
+
+
+def _holds(chain: "_Mechanisms", forms: Sequence[Linear], box: Box, finer: int) -> bool:
+    """Return whether one of the forms is not negative all over a box, or over each half of it."""
+    try:
+        found, middle = chain.numbers(box)
+        for form in forms:
+            if _narrowed(chain.value(form, found), chain.value(form, middle), box).ends[0] >= 0.0:
+                return True
+    except Unknown:
+        pass
+    side = max(range(len(box)), key=lambda each: (box[each][1] - box[each][0]) / max(1.0, abs(box[each][1])))
+    low, high = box[side]
+    if not finer or not low < high:
+        return False
+    parts = ((low, 0.5 * (low + high)), (0.5 * (low + high), high))
+    return all(_holds(chain, forms, (*box[:side], part, *box[side + 1 :]), finer - 1) for part in parts)
+
+
+def _spans_last(chain: "_Mechanisms", condition: Spans, run: Ends, box: Box) -> bool:
+    """Return whether all spans within a run last long enough, all over a box of parameters."""
+    known: dict[Ends, int] = {}
+    edges = condition.cells(*run)
+    while True:
+        cells = [(float(low), float(high)) for low, high in pairwise(edges)]
+        for cell in cells:
+            if cell not in known:
+                known[cell] = _kind(chain, condition.inside, (cell, *box))
+        doubtful = condition.doubtful(np.array([known[cell] for cell in cells]), edges)
+        if not doubtful.any():
+            return True
+        if (np.diff(edges)[doubtful] < condition.finest).any():
+            return False
+        edges = np.sort(np.concatenate([edges, 0.5 * (edges[:-1] + edges[1:])[doubtful]]))
+
+
+def _kind(chain: "_Mechanisms", form: Linear, box: Box) -> int:
+    """Say what a form does while the angle, the first side of a box, rises."""
+    try:
+        found, middle = chain.numbers(box)
+    except Unknown:
+        return UNKNOWN
+    value = _narrowed(chain.value(form, found), chain.value(form, middle), box)
+    if value.ends[1] < 0.0 or value.ends[0] >= 0.0:
+        return OUT if value.ends[1] < 0.0 else IN
+    low, high = value.slopes[0] if value.slopes else (0.0, 0.0)
+    return RISES if low > 0.0 else FALLS if high < 0.0 else UNKNOWN
+
+
+def _middle(box: Box) -> list[float]:
+    return [min(max(0.5 * (low + high), low), high) for low, high in box]
+
+
+def _narrowed(wide: Interval, middle: Interval, box: Box) -> Interval:
+    """Return a number narrowed to what its slopes leave from its value in the middle of the box."""
+    about: Any = Interval(middle.ends, None)
+    for slope, side, place in zip(wide.slopes or (), box, _middle(box), strict=False):
+        about = about + Interval(slope, None) * (Interval(side, None) - place)
+    if wide.slopes is not None:
+        wide.ends = max(wide.ends[0], about.ends[0]), min(wide.ends[1], about.ends[1])
+    return wide
+
+
+class _Mechanisms:
+    """The mechanisms that some signals need, in their order, each a module that computes with intervals."""
+
+    def __init__(self, scene: Scene, names: Sequence[str], sides: dict[Any, int], equations: dict[str, str]):
+        self._scene, self._sides = scene, sides
+        outputs = [
+            n
+            for n in names
+            if scene.instances[n.split(".")[0]].fmu.ports[n.split(".")[1]].causality == "output"
+        ]
+        needed = prune(scene, outputs, keep_shafts=True).scene
+        order, lagged = step_order(needed.instances, needed.wires)
+        if lagged or needed.drives:
+            raise Refused("the scene has a loop or a table of inputs")
+        read = {wire.source for wire in needed.wires} | {tuple(name.split(".")) for name in names}
+        self._parts = []
+        for name in order:
+            instance = needed.instances[name]
+            component = instance.fmu.component
+            if component is None or component.keeps == MOTION or any(map(instance.start, component.unsteady)):
+                raise Refused(f"{name} depends on more than the shaft angle")
+            if issubclass(component, ShaftDriven) and not instance.start(FOLLOWING):
+                raise Refused(f"{name} does not follow the shaft")
+            if equations.get(component.__name__) != digest(component):
+                raise Refused(f"the equations of {component.__name__} are not those of the proof")
+            wanted = [
+                v.name for v in variables_of(component) if (name, v.name) in read and v.causality == "output"
+            ]
+            wires = {w.sink[1]: ".".join(w.source) for w in needed.wires if w.sink[0] == name}
+            warnings = [0, *(n for n, each in enumerate(component.problems, 1) if each.warning)]
+            self._parts.append(
+                (name, instance, component, _module(component, wanted, instance), wanted, wires, warnings)
+            )
+
+    def numbers(self, box: Box) -> tuple[Numbers, Numbers]:
+        """Return all outputs over a box, and in its middle. Raises Unknown where too little is known."""
+        Interval.sides, point = len(box), tuple((m, m) for m in _middle(box))
+        found, middle = ({".".join(k): _side(n, b) for k, n in self._sides.items()} for b in (box, point))
+        for name, instance, component, module, wanted, wires, warnings in self._parts:
+            start = {
+                each.name: each.type(instance.start(each.name) if each.settable else each.start)
+                for each in variables_of(component)
+            }
+            sides = {key[1]: ".".join(key) for key in self._sides if key[0] == name}
+            time = number(0.0) if name == SHAFT else Interval(ALL, [ALL] * len(box))
+            place = joined(partial(_started, component, module, wanted, warnings))
+            wide, here = (
+                place(start | {variable: known[source] for variable, source in (wires | sides).items()}, time)
+                for known in (found, middle)
+            )
+            for variable, a, b in zip(wanted, wide, here, strict=True):
+                middle[f"{name}.{variable}"] = b
+                found[f"{name}.{variable}"] = _narrowed(a, b, box)
+        return found, middle
+
+    def value(self, form: Linear, found: Numbers) -> Interval:
+        """Return a sum of signals and parameters."""
+        total = number(form.constant)
+        for share, name in form.terms:
+            instance, variable = name.split(".")
+            start = self._scene.instances[instance].start(variable) if name not in found else 0.0
+            total = total + share * found.get(name, number(float(start or 0.0)))
+        return total
+
+
+def _side(place: int, box: Box) -> Interval:
+    return Interval(box[place], [(float(n == place),) * 2 for n in range(len(box))])
+
+
+def _started(
+    component: Any, module: Any, wanted: Any, warnings: Any, given: dict[str, Any], time: Any
+) -> Any:
+    """Outputs of a component at the start of a run. Raises Unknown where it may report a problem."""
+    made = module[component.__name__]()
+    for each in variables_of(component):
+        value = given[each.name]
+        if each.type is not float and isinstance(value, Interval):
+            value = each.type(floor(value))
+        setattr(made, each.name, number(value) if each.type is float else value)
+    if made.initialize(time) not in warnings:
+        raise Unknown
+    return tuple(number(getattr(made, variable)) for variable in wanted)
+
+
+def digest(component: Any) -> str:
+    """Return the SHA-256 of a component's equations."""
+    return hashlib.sha256(source.flatten(component).encode()).hexdigest()
+
+
+class _Numbers(ast.NodeTransformer):
+    """Makes each number with a point an interval, and each quotient one of intervals."""
+
+    def visit_Constant(self, node: ast.Constant) -> ast.AST:
+        return (
+            ast.parse(f"number({node.value!r})", mode="eval").body if isinstance(node.value, float) else node
+        )
+
+    def visit_BinOp(self, node: ast.BinOp) -> ast.AST:
+        self.generic_visit(node)
+        if isinstance(node.op, ast.Div):
+            node.left = ast.Call(ast.Name("number", ast.Load()), [node.left], [])
+        return node
+
+
+def _module(component: Any, wanted: Sequence[str], instance: Instance) -> dict[str, Any]:
+    """Return a module that computes some outputs of a component with intervals."""
+    settings = settings_of(variables_of(component), instance.start)
+    tree = sliced(ast.parse(source.flatten(component)), ENTRIES, wanted, settings)
+    constants = {name: number(getattr(math, name)) for name in ("pi", "inf", "e", "tau")}
+    space: dict[str, Any] = {"number": number, **constants, **MATH}
+    tree.body = [node for node in tree.body if not isinstance(node, ast.ImportFrom)]
+    exec(compile(ast.fix_missing_locations(_Numbers().visit(tree)), component.__name__, "exec"), space)
+    for node in tree.body:
+        if isinstance(node, ast.FunctionDef):
+            space[node.name] = joined(space[node.name])
+    return space

@@ -1,0 +1,111 @@
+"""Certificates are confirmed, and forged ones refused."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from loomfmu.errors import LoomfmuError
+from loomfmu.studies.proving import certificate
+from loomfmu.studies.proving.prove import Proofs, prove
+
+pytest.importorskip("flint")
+from loomfmu.studies.proving.check import check
+
+
+@pytest.fixture(scope="module")
+def told(loom: Any, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    """A certificate of one claim over a narrow range."""
+    path = tmp_path_factory.mktemp("proof") / "proof.json"
+    found = prove(loom, over=["shaft.speed=640rpm..645rpm"], claims=["margin", "dwell", "transfer"])
+    assert certificate.write(found, path) == ["margin", "dwell", "transfer"]
+    return dict(json.loads(path.read_text()))
+
+
+def _check(told: dict[str, Any], folder: Path) -> list[str]:
+    path = folder / "proof.json"
+    path.write_text(json.dumps(told))
+    return check(path)
+
+
+def test_a_certificate_is_confirmed(told: dict[str, Any], tmp_path: Path) -> None:
+    assert _check(told, tmp_path) == ["margin", "dwell", "transfer"]
+
+
+def _wider(told: dict[str, Any]) -> None:
+    told["over"]["shaft.speed"][1] = (700 * 0.10471975511965977).hex()
+
+
+def _missing(told: dict[str, Any]) -> None:
+    told["claims"][0]["conditions"][0][0].pop()
+
+
+def _too_many(told: dict[str, Any]) -> None:
+    told["claims"][0]["conditions"][0][0].append(-1)
+
+
+def _undivided(told: dict[str, Any]) -> None:
+    told["claims"][0]["conditions"][0][0] = [-1]
+
+
+def _other_bound(told: dict[str, Any]) -> None:
+    told["scene"] = told["scene"].replace("bound = 0.1", "bound = 0.11")
+
+
+def _other_scene(told: dict[str, Any]) -> None:
+    told["overrides"] = {"belt.head_mass": "130 g"}
+
+
+def _other_equations(told: dict[str, Any]) -> None:
+    told["equations"]["BeltMonitor"] = "0" * 64
+
+
+def _longer_dwell(told: dict[str, Any]) -> None:
+    told["scene"] = told["scene"].replace('"80 deg"', '"90 deg"')
+    del told["claims"][0]
+
+
+def _without_a_condition(told: dict[str, Any]) -> None:
+    told["claims"][0]["conditions"] = []
+
+
+def _without_an_angle(told: dict[str, Any]) -> None:
+    told["claims"][2]["conditions"][0].pop()
+
+
+FORGED = [
+    (_wider, "is not confirmed"),
+    (_missing, "a box is missing"),
+    (_too_many, "more boxes"),
+    (_undivided, "is not confirmed"),
+    (_other_bound, "is not confirmed"),
+    (_other_scene, "is not confirmed"),
+    (_other_equations, "equations of BeltMonitor are not those"),
+    (_longer_dwell, "dwell is not confirmed"),
+    (_without_a_condition, "0 conditions, not 1"),
+    (_without_an_angle, "ranges of the shaft angle"),
+]
+
+
+@pytest.mark.parametrize(("forge", "message"), FORGED)
+def test_a_forged_certificate_is_refused(
+    told: dict[str, Any], tmp_path: Path, forge: Any, message: str
+) -> None:
+    forged = json.loads(json.dumps(told))
+    forge(forged)
+    with pytest.raises(LoomfmuError, match=message):
+        _check(forged, tmp_path)
+
+
+@pytest.mark.parametrize("text", ["", "{}", '{"format": "loomfmu proof 9"}', "[1, 2]"])
+def test_what_is_no_certificate_is_refused_in_a_line(tmp_path: Path, text: str) -> None:
+    (tmp_path / "proof.json").write_text(text)
+    with pytest.raises(LoomfmuError, match=r"proof\.json"):
+        check(tmp_path / "proof.json")
+
+
+def test_nothing_is_written_if_nothing_can_be_certified(proofs: Proofs, tmp_path: Path) -> None:
+    none = Proofs(proofs.scene, proofs.over, proofs.claims[-1:])
+    with pytest.raises(LoomfmuError, match="no claim that a certificate can confirm is proven"):
+        certificate.write(none, tmp_path / "proof.json")

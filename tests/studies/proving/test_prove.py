@@ -1,0 +1,124 @@
+import numpy as np
+import pytest
+
+import loomfmu
+from loomfmu.cosim.claims.conditions import FALLS, IN, OUT, RISES, UNKNOWN, Linear, Spans
+from loomfmu.cosim.scenes.scene import Scene, parse
+from loomfmu.errors import LoomfmuError
+from loomfmu.studies.proving.prove import Proofs, prove
+
+
+def _status(found: Proofs) -> dict[str, str]:
+    return {proof.claim: proof.status for proof in found.claims}
+
+
+def test_claims_without_a_memory_are_proven_and_the_others_refused(proofs: Proofs) -> None:
+    proven = dict.fromkeys(("margin", "safe speed", "dwell", "transfer"), "proven")
+    assert _status(proofs) == proven | {"count": "cannot be proven"}
+    assert not proofs
+    assert "belt.buckled depends on the run so far" in proofs.claims[-1].why
+
+
+def test_a_claim_is_proven_up_to_its_limit_and_refuted_beyond(loom: Scene) -> None:
+    # the margin is 0.1 at 646.8164 rev/min, to which the search of `limit` and a closed form agree
+    assert prove(loom, over=["shaft.speed=300rpm..646.816rpm"], claims=["margin"])
+    (beyond,) = prove(loom, over=["shaft.speed=300rpm..646.817rpm"], claims=["margin"]).claims
+    assert beyond.status == "refuted"
+    run = loomfmu.evaluate(loom, set=dict(beyond.witness))
+    assert run.claims[0].holds is False
+
+
+def test_several_values_vary_together(loom: Scene) -> None:
+    over = ["shaft.speed=500rpm..600rpm", "belt.guide_clearance=0mm..0.3mm", "belt.head_mass=105g..113g"]
+    assert prove(loom, over=over, claims=["margin"])
+
+
+@pytest.mark.parametrize(
+    ("at", "status"),
+    [("135 deg", "refuted"), ("140 deg", "proven")],
+)
+def test_a_dwell_at_an_angle_for_all_reductions(loom: Scene, at: str, status: str) -> None:
+    # (1 - cos(S/2))/2 is 0.0150 of the stroke at 138.0 deg for a reduction of 0.5
+    text = loom.text.replace("140 deg", at)
+    scene = parse(text.replace("[[claims]]", "[dobby]\nlaw = 'sloped-sine'\n[[claims]]", 1), "loom")
+    found = prove(scene, over=["dobby.speed_reduction=0.5..0.7"], claims=["transfer"])
+    assert _status(found) == {"transfer": status}
+
+
+def test_what_few_boxes_cannot_decide_is_left_open_with_its_share(loom: Scene) -> None:
+    (found,) = prove(loom, over=["shaft.speed=300rpm..640rpm"], claims=["margin"], boxes=100).claims
+    assert found.status == "open"
+    assert 0.0 < found.share < 1.0
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "[shaft]\nramp_duration = 0.1\nspeed = '600 rev/min'\n",
+        '[inputs]\n"belt.guide_clearance" = [[0, 1e-4], [1, 3e-4]]\n',
+    ],
+)
+def test_a_start_up_and_a_table_of_inputs_are_proven_over_time(loom: Scene, text: str) -> None:
+    base = loom.text.replace('[shaft]\nspeed = "600 rev/min"\n', "") if "[shaft]" in text else loom.text
+    base = base.replace("bound = 0.1", "bound = -0.6")  # the shaft speeds up hard
+    scene = parse(base.replace("[[claims]]", f"{text}[[claims]]", 1), "loom")
+    margin, transfer = prove(scene, claims=["margin", "transfer"]).claims
+    assert margin
+    assert transfer or "the claim names angles" in transfer.why  # the table does not reach the frames
+    lowest = loomfmu.evaluate(scene).claims[0].worst
+    above = parse(scene.text.replace("bound = -0.6", f"bound = {lowest + 1e-4}", 1), "loom")
+    assert prove(above, claims=["margin"]).claims[0].status == "refuted"
+
+
+def test_a_loom_that_turns_backwards_is_proven_at_its_own_angles(loom: Scene) -> None:
+    scene = parse(
+        loom.text.replace("600 rev/min", "-600 rev/min").replace('bound = "shaft.speed"', "bound = 1"), "loom"
+    )
+    (found,) = prove(scene, claims=["margin"]).claims
+    assert found
+    (cover,) = found.covers[0][1]
+    assert cover.whole[0].tolist() == pytest.approx([-4 * 3.141592653589793, 0.0])
+
+
+@pytest.mark.parametrize(
+    ("asked", "message"),
+    [
+        (
+            {"over": ["shaft.speed=640rpm..300rpm"]},
+            "shaft.speed: the range from 640 rev/min to 300 rev/min is empty",
+        ),
+        ({"over": ["heald_1.pattern_length=2..4"]}, "is not a real number"),
+        ({"claims": ["margins"]}, "the scene has no claim"),
+        ({"over": ["belt.head_mass=1g..2g", "belt.head_mass=2g..3g"]}, "both set"),
+    ],
+)
+def test_bad_input_is_refused_in_a_line(loom: Scene, asked: dict[str, list[str]], message: str) -> None:
+    with pytest.raises(LoomfmuError, match=message) as caught:
+        prove(loom, **asked)  # type: ignore[arg-type]
+    assert "\n" not in str(caught.value)
+
+
+KINDS = {"r": RISES, "i": IN, "f": FALLS, "o": OUT, "u": UNKNOWN}
+
+
+@pytest.mark.parametrize(
+    ("kinds", "proven"),
+    [
+        ("oriifo", True),
+        ("orifo", False),  # too short
+        ("orfo", False),  # it may be inside for a moment
+        ("orofo", True),  # it never gets there
+        ("ifori", True),  # both ends of the run cut one off
+        ("for", True),
+        ("ifrifo", False),  # a short one may follow the one that is cut off
+        ("rifo", False),  # it begins within the run
+        ("riifo", True),
+        ("oriuifo", False),
+        ("uo", False),
+        ("iii", True),
+    ],
+)
+def test_spans_are_proven_only_where_they_are_known(kinds: str, proven: bool) -> None:
+    edges = np.arange(len(kinds) + 1.0)
+    cells = np.array([KINDS[each] for each in kinds])
+    assert bool(Spans(Linear(()), 1.5).doubtful(cells, edges).any()) != proven
