@@ -79,8 +79,8 @@ class Estimates:
         self.shown = (*self._dependence.counters, *self._angles)
 
     @property
-    def asked(self) -> range:
-        """The claims, counted from 0, that somebody asked for: all but those that decide others."""
+    def own_claims(self) -> range:
+        """The claims of the scene, counted from 0: all but those that only decide others."""
         return range(len(self.claims) - len(self._deciders))
 
     @property
