@@ -51,10 +51,12 @@ def write_references() -> None:
 def reference(component: type[Component]) -> str:
     """All outputs of a component over one revolution at its default values, booleans as 0 and 1.
 
+    Columns have the names of the model description, such as `torque[1]` for `torque_1`.
+
     Raises ValueError where the component refuses its own defaults.
     """
     outputs = [variable for variable in variables_of(component) if variable.causality == "output"]
-    lines = [",".join(["time", *(variable.name for variable in outputs)])]
+    lines = [",".join(["time", *(variable.structured for variable in outputs)])]
     running = component()
     problem = running.initialize(0.0)
     for sample in range(SAMPLES):

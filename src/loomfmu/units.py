@@ -110,6 +110,7 @@ QUANTITIES = {
     "N": "Force",
     "N.s": "Impulse",
     "N/m": "TranslationalSpringConstant",
+    "N.s/m": "TranslationalDampingConstant",
     "N.m": "Torque",
     "N.m2": "BendingStiffness",
     "N.m.s/rad": "RotationalDampingConstant",

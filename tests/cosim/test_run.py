@@ -54,7 +54,7 @@ def test_an_fmu_none_of_whose_outputs_can_be_recorded_is_named(tmp_path: Path) -
     lines = [line for line in FMI3.splitlines() if 'causality="output"' not in line]
     arrays = "".join(
         f'<Float64 name="phase {number}" valueReference="{90 + number}" causality="output">'
-        '<Dimension start="3"/></Float64>'
+        '<Dimension start="2000"/></Float64>'
         for number in range(6)
     )
     motor3(tmp_path, description="\n".join(lines).replace("</ModelVariables>", f"{arrays}</ModelVariables>"))

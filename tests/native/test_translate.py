@@ -168,7 +168,7 @@ def test_what_does_not_translate_is_named_with_its_place(tools, component, funct
 
 
 REFUSED = {
-    "y = max(x, 2.0)": "max is neither of math nor a function of the physics",
+    "y = max(x, 2.0)": "max is not a function of math, of physics or of this file; write a if a > b else b",
     "y = f'{x}'": "JoinedStr is not in the subset",
     "y = 'a'": "'a' is not a number",
     "y = lambda: x": "Lambda is not in the subset",

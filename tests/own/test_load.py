@@ -76,7 +76,12 @@ MISTAKES = {
     "an error in another unit": (
         '"Rate")',
         '"Rate", error="sound")',
-        "rate is in m/s, but its error sound in m",
+        "rate is in m/s, but error = 'sound' in m",
+    ),
+    "an extreme in another unit": (
+        '"Rate")',
+        '"Rate", highest_of="sound")',
+        "rate is in m/s, but highest_of = 'sound' in m",
     ),
     "an extreme of nothing": ('"Rate")', '"Rate", lowest_of="soun")', "lowest_of = 'soun' .* mean 'sound'"),
     "a count of blows that is none": (
@@ -86,7 +91,7 @@ MISTAKES = {
     ),
     "an extreme that keeps nothing": (
         '    rate: float = output("m/s", "Rate")',
-        '    keeps: ClassVar[str] = NOTHING\n    rate: float = output("m/s", "Rate", lowest_of="sound")',
+        '    keeps: ClassVar[str] = NOTHING\n    rate: float = output("m/s", "Rate", lowest_of="rate")',
         "line 17: rate is an extreme so far, but keeps = NOTHING",
     ),
     "a state beside extremes": (

@@ -7,7 +7,9 @@ import shutil
 import subprocess
 import sys
 import zipfile
+from dataclasses import dataclass
 from pathlib import Path
+from typing import ClassVar
 
 import fmpy
 import numpy as np
@@ -20,6 +22,7 @@ from loomfmu.cli import main
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.settings import KEYS
 from loomfmu.loom.standard_loom import COMPONENT_OF
+from loomfmu.mechanism import ShaftDriven, highest_so_far, output, state
 from loomfmu.own import checks, load
 from loomfmu.own.new import new
 
@@ -279,6 +282,49 @@ def test_an_extreme_that_misses_the_curve_does_not_pass_the_check(
     changed(cam, *changes)
     with pytest.raises(AssertionError, match=said):
         checks.check_extremes(load.component("picking_cam.py", cam))
+
+
+@dataclass(slots=True)
+class Swing(ShaftDriven):
+    """A swing that a crank lets go at the start: what it does later depends on where the crank was."""
+
+    longest_turn: ClassVar[float] = math.pi / 12.0
+    phase: float = state("rad", "Phase")
+    swing: float = state("m", "Amplitude")
+    height: float = output("m", "Height", rate="velocity")
+    velocity: float = output("m/s", "Velocity")
+    highest: float = output("m", "Highest height", highest_of="height")
+
+    def initialize(self, time: float) -> int:
+        self.phase = 0.0
+        self.swing = 2.0 + math.cos(self.shaft(time, 0.0)[0])
+        self.highest = 0.0
+        return self.step(time, 0.0)
+
+    def step(self, time: float, step_size: float) -> int:
+        height, velocity = self.height, self.velocity
+        self.phase += 40.0 * step_size
+        self.height = self.swing * math.sin(self.phase)
+        self.velocity = 40.0 * self.swing * math.cos(self.phase)
+        self.highest = self.kept(step_size, height, velocity)
+        return 0
+
+    def kept(self, step_size: float, height: float, velocity: float) -> float:
+        return highest_so_far(self.highest, step_size, height, velocity, self.height, self.velocity)
+
+
+class SampledSwing(Swing):
+    """The same with an extreme that compares samples."""
+
+    def kept(self, step_size: float, height: float, velocity: float) -> float:
+        return max(self.highest, self.height)
+
+
+def test_the_checks_tell_an_extreme_that_is_sampled_from_a_motion_that_its_start_changes() -> None:
+    checks.check_rates(Swing)
+    checks.check_extremes(Swing)
+    with pytest.raises(AssertionError, match="highest depends on where the samples lie"):
+        checks.check_extremes(SampledSwing)
 
 
 def test_the_checks_are_for_classes_on_shaft_driven(tmp_path: Path) -> None:

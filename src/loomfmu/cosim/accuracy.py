@@ -29,7 +29,7 @@ class Choice(NamedTuple):
     text: str
 
 
-def chosen(
+def fewest_steps(
     scene: Scene, estimates: Estimates, judge: Callable[[Scene], tuple[Signals, Sequence[Verdict]]]
 ) -> Choice:
     """The fewest steps with which the error of every claim of a scene is below its `accuracy`.
@@ -52,7 +52,7 @@ def chosen(
             if crowded(coarsest):  # those that were tried before are hardly coarser
                 coarser = estimates.coarser(tried, uniform(tried), everything)
             estimated = estimates.of(tried, trace, verdicts, coarser)
-            errors = [_share(estimated[each], estimates.claims[each].noise) for each in estimates.asked]
+            errors = [_share(estimated[each], estimates.claims[each].noise) for each in estimates.own_claims]
             number, error = max(enumerate(errors), key=lambda each: each[1])
             if error <= wanted:
                 text = (

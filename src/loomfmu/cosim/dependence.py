@@ -130,7 +130,7 @@ class Dependence:
         return wire.sink[0] in upstream([wire.source[0]], sources) and wire.source[0] in ours
 
     @cached_property
-    def kept(self) -> list[set[str]]:
+    def memories(self) -> list[set[str]]:
         """The kinds of memory of the FMUs that each claim depends on."""
         return [
             {MOTION if each is None else each.keeps for each in self._components(names)}
@@ -146,7 +146,7 @@ class Dependence:
         return {
             number
             for number, names in enumerate(self._upstream)
-            if MOTION in self.kept[number]
+            if MOTION in self.memories[number]
             or not all(map(COMPONENTS.owns, self._components(names)))
             or len(movers_of(names, self._requested)) > 1
         }
@@ -165,10 +165,10 @@ class Dependence:
     def methods(self) -> list[Method]:
         """The method that estimates each claim's error."""
         found = []
-        for names, kept in zip(self._upstream, self.kept, strict=True):
+        for names, memories in zip(self._upstream, self.memories, strict=True):
             components = self._components(names)
             held = HELD if all(map(COMPONENTS.owns, components)) else CORNER
-            method = MEMORY if MOTION in kept else held if EXTREMES in kept else PRESENT
+            method = MEMORY if MOTION in memories else held if EXTREMES in memories else PRESENT
             method = LAGGED if self._lagged else method
             method = BOUNCING if any(component and component.bounces for component in components) else method
             found.append(

@@ -18,6 +18,7 @@ import numpy as np
 from ..errors import LoomfmuError
 from ..traces import Signals, Verdict
 from .claims.claim import Claim
+from .claims.movers import whole_turn
 from .dependence import Count, Dependence, Judged, Method
 from .importing.process import AVAILABLE
 from .master.grid import Grid, uniform
@@ -78,8 +79,8 @@ class Estimates:
         self.shown = (*self._dependence.counters, *self._angles)
 
     @property
-    def asked(self) -> range:
-        """The claims, counted from 0, that somebody asked for: all but those that decide others."""
+    def own_claims(self) -> range:
+        """The claims of the scene, counted from 0: all but those that only decide others."""
         return range(len(self.claims) - len(self._deciders))
 
     @property
@@ -195,7 +196,8 @@ def coarseness(scene: Scene) -> float:
 
 def _fastest(trace: Signals, angle: str) -> float:
     """The highest mean speed of a shaft in any step [rad/s]."""
-    return float(np.max(np.abs(np.diff(trace[angle])) / np.diff(trace.time), initial=0.0))
+    speed = np.max(np.abs(np.diff(trace[angle])) / np.diff(trace.time), initial=0.0)
+    return float(speed) * math.tau / (whole_turn(trace.unit(angle)) or math.tau)
 
 
 def worst_of(verdict: Verdict, trace: Signals) -> float:

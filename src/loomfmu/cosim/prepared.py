@@ -157,7 +157,7 @@ class Pattern:
             return scene, None, ""
         if errors == "none" and self._steps:
             return altered(scene, steps_per_period=self._steps), None, ""
-        choice = accuracy.chosen(scene, self._estimates, self._tried)
+        choice = accuracy.fewest_steps(scene, self._estimates, self._tried)
         self._steps = int(choice.scene.steps_per_period)
         return choice
 

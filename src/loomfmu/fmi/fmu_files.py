@@ -57,24 +57,24 @@ def zipped(contents: dict[str, bytes]) -> bytes:
 
 def described(component: type[Component], note: str = "") -> dict[str, bytes]:
     """The files that describe a component in every flavour; the note ends the documentation."""
-    text = beside(component, {"README.md": "text"}).get("text")
+    text = files_near(component, {"README.md": "text"}).get("text")
     readme = documentation.derived(component) if text is None else text.decode("utf-8-sig")
     readme = documentation.with_table(readme, component)
     note = documentation.names_note(component) + parameter_note(component) + note
     return {
         "documentation/index.html": documentation.page(component.__name__, readme + note),
-        **beside(component, {"drawing.svg": "documentation/drawing.svg"}),
-        **told(component),
+        **files_near(component, {"drawing.svg": "documentation/drawing.svg"}),
+        **description_files(component),
     }
 
 
-def beside(component: type[Component], names: dict[str, str]) -> dict[str, bytes]:
+def files_near(component: type[Component], names: dict[str, str]) -> dict[str, bytes]:
     """Files that lie with a component, by their names in the FMU; those that are not there are left out."""
     home = folder(component)
     return {there: (home / here).read_bytes() for here, there in names.items() if (home / here).is_file()}
 
 
-def told(component: type[Component]) -> dict[str, bytes]:
+def description_files(component: type[Component]) -> dict[str, bytes]:
     """Return the files that describe the variables in addition to the model description."""
     return terminal_files(component) | parameter_files(component, __version__)
 

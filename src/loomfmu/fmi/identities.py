@@ -115,7 +115,7 @@ def _computed(component: type[Component]) -> Identity:
     from . import fmu_files, live_fmu
     from .native import native_fmu
 
-    texts = sorted(fmu_files.beside(component, fmu_files.TEXTS).items())
+    texts = sorted(fmu_files.files_near(component, fmu_files.TEXTS).items())
     suffix = hashlib.sha256(repr(texts).encode()).hexdigest()[:8]
     guid = live_fmu.guid(component)
     return {

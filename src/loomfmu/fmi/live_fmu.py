@@ -18,12 +18,12 @@ from .fmu_files import (
     FMU,
     HEADERS,
     NAMESPACE,
-    beside,
     described,
+    description_files,
     file_in,
+    files_near,
     license_of,
     license_of_headers,
-    told,
     zipped,
 )
 from .live import live_slave, live_state, live_wrapper
@@ -51,7 +51,7 @@ def archive(component: type[Component]) -> bytes:
 def guid(component: type[Component]) -> str:
     """Identity of an FMU: of all that is said of its variables, its source and the slave that runs it."""
     digest = hashlib.sha256(model_description(component, "", __version__))
-    for content in told(component).values():
+    for content in description_files(component).values():
         digest.update(content)
     for part in (_rows(component), flatten(component), *map(_source, LIVE)):
         digest.update(part.encode())
@@ -67,7 +67,7 @@ def _contents(component: type[Component]) -> dict[str, bytes]:
     package = f"loomfmu_{name.lower()}_{identity.replace('-', '')[:16]}"
     files = {
         "modelDescription.xml": model_description(component, identity, __version__),
-        **beside(component, {"icon.png": "model.png"}),
+        **files_near(component, {"icon.png": "model.png"}),
         **described(component),
         "documentation/externalDependencies.html": documentation.external_dependencies(name),
         "documentation/licenses/license.txt": license_of("loomfmu"),

@@ -183,8 +183,10 @@ class LocksInTime(Claim):
 
     def _velocity(self, run: Wired) -> str:
         """The velocity of the lock's shaft; "" if it turns by itself."""
-        given = f"{self.lock}.shaft_velocity"
-        return run.wires.get(given, "")
+        source = run.wires.get(f"{self.lock}.shaft_velocity", "")
+        if source in run and (unit := run.unit(source)) != SPEED[0]:
+            raise LoomfmuError(f"{self.lock} has its speed from {source} in {unit}; it must be in {SPEED[0]}")
+        return source
 
     def question(self, trace: Signals) -> Question:
         velocity, margin = self._velocity(trace), f"{self.lock}.torque_margin"

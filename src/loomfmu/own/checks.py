@@ -14,7 +14,7 @@ from ..declaring.variables import Component, variables_of
 SPEED = 40.0  # of the shaft [rad/s]
 FINE = 2.0 * pi / 1440.0  # rad
 COARSE = pi / 12.0  # longest turn of a step where a component allows any [rad]
-STARTS = 8  # places within a step at which the first sample is taken
+FIRST_STEPS = 8  # shares of a step that the first one takes, so that samples lie at as many places
 BETTER = 0.1  # of the spread of samples: what the spread of an extreme may be
 Rows = list[dict[str, float]]
 ROUNDING = 1e-9  # of the largest value
@@ -27,7 +27,7 @@ def check_rates(component: type[Component], values: Mapping[str, Any] | None = N
     `values` are parameters that differ from the defaults, in SI.
     """
     rated = {v.name: v.rate for v in variables_of(component) if v.causality == "output" and v.rate}
-    rows = list(_run(component, values or {}, FINE, 0.0))
+    rows = list(_run(component, values or {}, FINE, FINE))
     h = FINE / SPEED
     for name, rate in rated.items():
         largest = max(abs(row[rate]) for row in rows)
@@ -43,12 +43,13 @@ def check_rates(component: type[Component], values: Mapping[str, Any] | None = N
 def check_extremes(component: type[Component], values: Mapping[str, Any] | None = None) -> None:
     """Every extreme is that of the continuous curve: no sample is beyond it, wherever the samples lie.
 
-    Samples at several places of the coarsest steps that the component allows are off by more or less. What
-    is declared as an extreme so far and does not spread ten times less than they do was sampled itself.
+    Samples at several places of the coarsest steps that the component allows are off by more or less: all
+    runs start alike, and the first step is shorter in some. What is declared as an extreme so far and does
+    not spread ten times less than the samples was sampled itself.
     """
     turn = min(component.longest_turn or FINE, COARSE)
-    starts = [turn * place / STARTS for place in range(STARTS)]
-    runs = [list(_run(component, values or {}, turn, start)) for start in starts]
+    first_turns = [turn * (share + 1) / FIRST_STEPS for share in range(FIRST_STEPS)]
+    runs = [list(_run(component, values or {}, turn, first)) for first in first_turns]
     for variable in variables_of(component):
         for followed, best in ((variable.lowest_of, min), (variable.highest_of, max)):
             if followed and variable.type is float:
@@ -87,19 +88,22 @@ def _spread(values: list[float]) -> float:
 
 
 def _run(
-    component: type[Component], values: Mapping[str, Any], turn: float, start: float
+    component: type[Component], values: Mapping[str, Any], turn: float, first: float
 ) -> Iterator[dict[str, float]]:
-    """Time and outputs over some two revolutions of a shaft of constant speed, in equal steps."""
+    """Time and outputs over two revolutions of a shaft of constant speed, with equal steps but the first."""
     names = [variable.name for variable in variables_of(component)]
     assert "speed" in names and "start_angle" in names, (
         f"{component.__name__} has no speed and start_angle to turn it by: these checks are for classes on"
         " ShaftDriven; write tests of your own for others"
     )
-    running = component(**{"speed": SPEED, "start_angle": start - pi, **values})
+    running = component(**{"speed": SPEED, "start_angle": -pi, **values})
     outputs = [variable.name for variable in variables_of(component) if variable.causality == "output"]
-    h = turn / SPEED
-    problem = running.initialize(0.0)
-    for step in range(int(4.0 * pi / turn) + 2):
+    time = 0.0
+    h = first / SPEED
+    problem = running.initialize(time)
+    for _ in range(int(4.0 * pi / turn) + 2):
         assert problem == 0 or component.problems[problem - 1].warning, component.problems[problem - 1].text
-        yield {"time": step * h, **{name: getattr(running, name) for name in outputs}}
-        problem = running.step(step * h, h)
+        yield {"time": time, **{name: getattr(running, name) for name in outputs}}
+        problem = running.step(time, h)
+        time = time + h
+        h = turn / SPEED

@@ -120,9 +120,11 @@ def _of_references(component: type[Component]) -> Iterator[Fault]:
         if variable.valid_if in known and known[variable.valid_if].type is not bool:
             text = f"{variable.name}: valid_if = {variable.valid_if!r} is not a yes-or-no output"
             yield Fault(variable.name, text)
-        if variable.error in known and known[variable.error].unit != variable.unit:
-            text = f"{variable.name} is in {variable.unit}, but its error {variable.error} in"
-            yield Fault(variable.name, f"{text} {known[variable.error].unit}")
+        for key in ("error", "lowest_of", "highest_of"):
+            other = known.get(getattr(variable, key))
+            if other and other.unit != variable.unit:
+                text = f"{variable.name} is in {variable.unit}, but {key} = {other.name!r} in {other.unit}"
+                yield Fault(variable.name, text)
         if variable.rate is not None:
             yield from _of_rate(variable, known[variable.rate])
     for terminal in component.terminals:

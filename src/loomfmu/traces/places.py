@@ -75,12 +75,12 @@ def abandoned(path: Path) -> list[Path]:
 @cache
 def _machine() -> str:
     """Eight digits for where a number means one process: a machine, on Linux its namespace of processes."""
-    told = [platform.node()]
+    traits = [platform.node()]
     with contextlib.suppress(OSError):
-        told.append(Path("/etc/machine-id").read_text())
+        traits.append(Path("/etc/machine-id").read_text())
     with contextlib.suppress(OSError):
-        told.append(str(Path("/proc/self/ns/pid").readlink()))
-    return hashlib.sha256("\n".join(told).encode()).hexdigest()[:8]
+        traits.append(str(Path("/proc/self/ns/pid").readlink()))
+    return hashlib.sha256("\n".join(traits).encode()).hexdigest()[:8]
 
 
 def _runs(process: int) -> bool:

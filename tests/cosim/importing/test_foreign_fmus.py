@@ -225,6 +225,7 @@ def test_arrays_are_set_wired_and_recorded(tmp_path: Path, isolated: bool) -> No
     [
         ("u = [1, 2, 3]\n", "one.u is an array up to [2,2]: 4 values, not 3"),
         ("u = [1, 2, 3, true]\n", "one.u_2_2: True is not a quantity such as"),
+        ("u = [[1, 2, 3], [4]]\n", "one.u is an array up to [2,2]: write it row by row"),
         ('[wires]\n"one.u" = "one.table"\n', "wire one.table -> one.u: 2 values for 4"),
         ('[wires]\n"one.u" = "one.velocity"\n', "wire one.velocity -> one.u: 1 values for 4"),
     ],
@@ -232,6 +233,35 @@ def test_arrays_are_set_wired_and_recorded(tmp_path: Path, isolated: bool) -> No
 def test_arrays_of_another_size_are_refused(tmp_path: Path, text: str, said: str) -> None:
     motor3(tmp_path, description=ARRAYS)
     assert said in refused(tmp_path, TABLE + text)
+
+
+@pytest.mark.parametrize("text", ["u = [1, 2, 3, 4]\n'u[2,1]' = 9\n", "'u[2,1]' = 9\nu = [[1, 2], [3, 4]]\n"])
+def test_the_value_of_an_element_prevails_over_that_of_its_array(tmp_path: Path, text: str) -> None:
+    motor3(tmp_path, description=ARRAYS)
+    values = scenes.parse(TABLE + text, directory=tmp_path).instances["one"].values
+    assert [values[f"u_{row}_{column}"] for row in (1, 2) for column in (1, 2)] == [1.0, 2.0, 9.0, 4.0]
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (
+            '[wires]\n"one.u" = "two.y"\n"one.u[1,2]" = "two.velocity"\n',
+            "one.u_1_2 is wired twice, to two.y_1_2 and two.velocity; keep one wire",
+        ),
+        (
+            '[wires]\n"one.u_1_2" = "two.y[1,1]"\n"one.u[1,2]" = "two.velocity"\n',
+            "wires: 'one.u[1,2]' is one.u_1_2, which has a wire; keep one of them",
+        ),
+        (
+            '[inputs]\n"one.u_1_2" = [[0, 1]]\n"one.u[1,2]" = [[0, 2]]\n',
+            "inputs.one.u[1,2] is a second table for one.u_1_2; keep one of them",
+        ),
+    ],
+)
+def test_an_input_has_one_source_by_whatever_name(tmp_path: Path, text: str, said: str) -> None:
+    motor3(tmp_path, description=ARRAYS)
+    assert refused(tmp_path, TABLE + '[two]\nfmu = "Motor3.fmu"\n' + text) == said
 
 
 def test_a_sweep_varies_tolerances_and_elements_of_arrays(tmp_path: Path) -> None:
@@ -291,6 +321,46 @@ def test_degrees_become_radians_on_a_wire(tmp_path: Path) -> None:
     assert weft.initialize(0.0) == 0 and weft.travel == pytest.approx(trace["weft.travel"][-1], rel=1e-13)
 
 
+@pytest.mark.parametrize("unit", ["rad", "deg", "rev"])
+def test_a_claim_asks_for_steps_by_the_speed_of_a_shaft_in_any_unit(tmp_path: Path, unit: str) -> None:
+    """Ten revolutions in a second, in steps of 36 deg: a sample is needed every 18 deg."""
+    motor2(tmp_path, phi=unit)
+    angle = {"rad": 20.0 * np.pi, "deg": 3600.0, "rev": 10.0}[unit]
+    free = f"w_free = {angle}\ntau_stall = 1e9\n"  # it is at this speed at once, whatever its unit is
+    claim = '[[claims]]\nkind = "below"\nsignal = "weft.travel"\nbound = "9 m"\n'
+    text = MOTOR + free + WEFT + claim
+    (found,) = ran(tmp_path, text, tmp_path, isolated=True, duration="0.3 s", step="10 ms").claims
+    assert not found.decided and "set step = 0.005 s or less" in found.note
+
+
+def test_nobody_knows_a_whole_turn_of_an_angle_in_an_unknown_unit(tmp_path: Path) -> None:
+    definition = '<Unit name="mrad"><BaseUnit rad="1" factor="0.001"/></Unit></UnitDefinitions>'
+    described = description2(phi="mrad").replace("</UnitDefinitions>", definition)
+    packed(tmp_path / "Motor.fmu", described, library("fmi2.c"), "Motor")
+    claim = '[[claims]]\nkind = "below"\nsignal = "weft.travel"\nbound = "9 m"\n'
+    text = MOTOR + "w_free = 60\n" + WEFT + claim
+    (found,) = ran(tmp_path, text, tmp_path, isolated=True).claims  # it turns by 0.003 rad
+    assert not found.decided and "revolution" in found.note
+
+
+def test_the_speed_of_a_lock_is_judged_in_its_own_unit_alone(tmp_path: Path) -> None:
+    described = (
+        description2()
+        .replace('"rad.s-1"', '"rpm"')
+        .replace('rad="1" s="-1"', 'rad="1" s="-1" factor="0.10471975511965977"')
+    )
+    packed(tmp_path / "Motor.fmu", described, library("fmi2.c"), "Motor")
+    text = (
+        MOTOR
+        + WEFT.replace("weft", "lock").replace('machine = "WL680-3600"', "")
+        + '[[claims]]\nkind = "locks_in_time"\n'
+    )
+    with pytest.raises(
+        LoomfmuError, match=r"lock has its speed from motor\.flange_w in rev/min; it must be in rad/s"
+    ):
+        ran(tmp_path, text, tmp_path, isolated=True)
+
+
 KELVIN, CUBIC = Definition((0, 0, 0, 0, 1, 0, 0, 0)), Definition((0, 3, 0, 0, 0, 0, 0, 0))
 
 
@@ -316,6 +386,25 @@ def test_values_in_units_of_others(
             port.value(text, "x")
     else:
         assert port.value(text, "x") == pytest.approx(value, rel=1e-14)
+
+
+@pytest.mark.parametrize("own", ['unit="K" relativeQuantity="true"', 'declaredType="Difference"'])
+def test_differences_of_temperatures_have_no_offset(tmp_path: Path, own: str) -> None:
+    kind = '<SimpleType name="Difference"><Real unit="K" relativeQuantity="true"/></SimpleType>'
+    described = (
+        description2()
+        .replace("<TypeDefinitions>", f"<TypeDefinitions>{kind}")
+        .replace(
+            '<Real unit="K"/></ScalarVariable>',
+            '<Real unit="degC" relativeQuantity="true"/></ScalarVariable>',
+        )
+        .replace('<Real start="0" unit="Nm"/>', f'<Real start="0" {own}/>')
+    )
+    packed(tmp_path / "Motor.fmu", described, library("fmi2.c"), "Motor")
+    scene = scenes.parse(MOTOR + '"load.tau" = "5 degC"\n', directory=tmp_path)
+    assert scene.instances["motor"].values["load_tau"] == 5.0
+    wired = scenes.parse(MOTOR + '[wires]\n"motor.load.tau" = "motor.winding"\n', directory=tmp_path)
+    assert wired.wires[0].conversion(7.0) == 7.0
 
 
 UNIT = st.builds(

@@ -18,7 +18,7 @@ from loomfmu.components import COMPONENTS
 from loomfmu.cosim.importing import fmus
 from loomfmu.cosim.importing.built import file_of
 from loomfmu.cosim.master import steppers
-from loomfmu.cosim.master.grid import chosen, uniform
+from loomfmu.cosim.master.grid import grid_of_points, uniform
 from loomfmu.cosim.master.master import Interrupted, Master
 from loomfmu.cosim.master.steppers import CompiledStepper, PythonStepper
 from loomfmu.cosim.planning.pruning import prune
@@ -148,7 +148,7 @@ def test_chosen_points_are_stepped_by_both_alike() -> None:
     scene = small(90, shaft__ramp_duration=0.05, rest=DRIVEN)
     random = np.random.default_rng(1)
     points = np.concatenate([[0.0], np.cumsum(random.uniform(1e-7, 2e-3, 200))])
-    grid = chosen(scene, points)
+    grid = grid_of_points(scene, points)
     compiled = stepped(scene, CompiledStepper, grid)
     same_bits(compiled, stepped(scene, PythonStepper, grid))
     np.testing.assert_array_equal(compiled[0], points)

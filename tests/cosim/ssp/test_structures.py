@@ -5,7 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from foreign_motors import ARRAYS, motor2, motor3
+from foreign_motors import ARRAYS, description2, library, motor2, motor3
+from foreign_motors import packed as packed_fmu
 
 from loomfmu import LoomfmuError
 from loomfmu.cosim.run import Result, run
@@ -167,5 +168,40 @@ def test_arrays_are_set_and_connected(tmp_path: Path) -> None:
                 path,
                 system.replace("1 2 3 4", "1 2 3"),
                 {"Motor.fmu": (tmp_path / "Motor3.fmu").read_bytes()},
+            )
+        )
+
+
+def test_a_connector_states_the_unit_of_an_array(tmp_path: Path) -> None:
+    motor3(tmp_path, description=ARRAYS)
+    parts = "".join(
+        MOTOR.replace("/>", ">{}</ssd:Component>").format(name, connectors(**{end: unit}))
+        for name, end, unit in (("one", "y", "output mm"), ("two", "u", "input m"))
+    )
+    system = in_system(parts, connection("one.y", "two.u"))
+    path = packed(tmp_path / "a.ssp", system, {"Motor.fmu": (tmp_path / "Motor3.fmu").read_bytes()})
+    assert {each.conversion.factor for each in ran(path).scene.wires} == {0.001}
+
+
+@pytest.mark.parametrize(
+    ("wire", "said"),
+    [
+        (
+            connection("a.steps", "b.mode"),
+            "connection a.steps -> b.mode: an output cannot give the value of a",
+        ),
+        (connection("a.steps", "b.hidden"), "connection to b.hidden: a local cannot be connected"),
+    ],
+)
+def test_what_takes_no_value_of_a_connection_is_told(tmp_path: Path, wire: str, said: str) -> None:
+    hidden = '<ScalarVariable name="hidden" valueReference="0" causality="local"><Integer/></ScalarVariable>'
+    described = description2().replace("</ModelVariables>", f"{hidden}</ModelVariables>")
+    content = packed_fmu(tmp_path / "Motor.fmu", described, library("fmi2.c"), "Motor").read_bytes()
+    with pytest.raises(LoomfmuError, match=said):
+        ran(
+            packed(
+                tmp_path / "a.ssp",
+                in_system(MOTOR.format("a") + MOTOR.format("b"), wire),
+                {"Motor.fmu": content},
             )
         )

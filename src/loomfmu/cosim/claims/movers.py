@@ -97,7 +97,9 @@ def _is_shaft(fmu: str) -> bool:
 
 
 def _turning(angle: str, run: Wired) -> Mover:
-    return Mover(angle, turn=(angle in run and whole_turn(run.unit(angle))) or math.tau)
+    unit = run.unit(angle) if angle in run else "rad"
+    plain = math.tau if unit == "1" else math.inf  # of a unit that is not known nobody knows a whole turn
+    return Mover(angle, turn=whole_turn(unit) or plain)
 
 
 def whole_turn(unit: str) -> float:

@@ -84,10 +84,14 @@ def own_name(name: str, definition: Definition | None) -> str:
 
 @dataclass(frozen=True)
 class Stated:
-    """A unit that an FMU, a package or a scene states: its name, ours if we have it, and its definition."""
+    """A unit that an FMU, a package or a scene states: its name, ours if we have it, and its definition.
+
+    A `relative` one is that of differences, as of temperatures, which have no offset.
+    """
 
     name: str
     definition: Definition | None
+    relative: bool = False
 
     def conversion(self, to: "Stated") -> Linear:
         """Return what leads from a value in this unit to one in another.
@@ -99,6 +103,8 @@ class Stated:
             if self.name == to.name:
                 return SAME
             raise ValueError("")
+        if self.relative or to.relative:
+            one, other = replace(one, offset=0.0), replace(other, offset=0.0)
         if one.agrees(other):
             return SAME
         if one.exponents != other.exponents:

@@ -6,7 +6,11 @@ import re
 from collections.abc import Collection, Iterable
 from copy import copy
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
+from xml.etree.ElementTree import fromstring
+
+import fmpy
 
 from ...declaring.variables import ALONE, SHARED, Beside, Component, Variable, beside, variables_of
 from ...errors import LONGEST_NAME, check_text, shown
@@ -26,6 +30,24 @@ KINDS = {
 }
 MOST_ELEMENTS = 1000  # of an array that is exchanged
 MOST_IN_ALL = 100_000  # of all of these in an FMU
+
+
+def described(directory: Path) -> Any:
+    """Read the model description of an FMU that is unpacked in a folder, whatever fmpy raises.
+
+    What variables say of `relativeQuantity` is added: fmpy reads it of types alone.
+    """
+    description = fmpy.read_model_description(str(directory), validate=False)
+    text = (directory / "modelDescription.xml").read_bytes()
+    relative = dict[str | None, bool]()
+    variables = fromstring(text).find("ModelVariables") if b"relativeQuantity" in text else None
+    for element in () if variables is None else variables:
+        said = [each.get("relativeQuantity") for each in (element, *element)]  # FMI 3.0, FMI 2.0
+        if given := next(filter(None, said), ""):
+            relative[element.get("name")] = given in ("true", "1")
+    for variable in description.modelVariables:
+        variable.relativeQuantity = relative.get(variable.name)
+    return description
 
 
 def is_ours(description: Any) -> bool:
@@ -207,9 +229,6 @@ def _port(variable: Any, name: str, rates: dict[str, str], definitions: dict[str
 
     given = (said("unit") or "") if kind == "Real" else "1"
     unit = stated(given, definitions.get(given))
-    definition = unit.definition if unit else None
-    if definition is not None and said("relativeQuantity"):  # a difference of temperatures has no offset
-        definition = replace(definition, offset=0.0)
     name_of_unit = unit.name if unit else "1"
     return Port(
         name=name,
@@ -229,7 +248,8 @@ def _port(variable: Any, name: str, rates: dict[str, str], definitions: dict[str
         base_type=variable.type,
         discrete=variable.variability == "discrete",
         has_unit=unit is not None,
-        definition=definition,
+        definition=unit.definition if unit else None,
+        relative=bool(said("relativeQuantity")),
         nominal=_limit(kind, said("nominal")),
     )
 

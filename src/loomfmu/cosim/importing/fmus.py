@@ -34,7 +34,15 @@ from .built import (
     is_here,
     is_our_build,
 )
-from .descriptions import declared_ports, is_ours, plain_names, ports_of, tolerance_of, unsupported_outputs
+from .descriptions import (
+    declared_ports,
+    described,
+    is_ours,
+    plain_names,
+    ports_of,
+    tolerance_of,
+    unsupported_outputs,
+)
 from .facts import Facts, facts_of
 from .ports import Port, Value
 
@@ -330,7 +338,7 @@ def _unpacked(path: Path) -> tuple[str, Path]:
 
 def _read(path: Path, sha256: str, directory: Path) -> Fmu:
     try:
-        description = fmpy.read_model_description(str(directory), validate=False)
+        description = described(directory)
         ours, fmi = is_ours(description), int(description.fmiVersion[0])
         trusted = ours and is_our_build(path, description.modelName, fmi)
         component = COMPONENTS[description.modelName] if trusted else None

@@ -40,6 +40,7 @@ class Port:
 
     `name` is what scenes and traces call it: letters, digits and _. `own` is the FMU's own name for it,
     `base_type` its type there.
+    `relative` says that it is a difference, as of temperatures: its unit has no offset.
     `beside` are the outputs that say more of it. `inner` is a local that a scene records as it does outputs.
     `array` is the FMU's name of the array that it is an element of; then `reference` has its number, too.
     """
@@ -62,6 +63,7 @@ class Port:
     discrete: bool = False  # it changes at events alone
     has_unit: bool = True
     definition: Definition | None = None
+    relative: bool = False
     nominal: float | None = None
     beside: Beside = ALONE
     inner: bool = False
@@ -70,7 +72,8 @@ class Port:
     @property
     def stated(self) -> Stated | None:
         """Its unit; None where none is stated, or for what is not a real number."""
-        return Stated(self.unit, self.definition) if self.has_unit and self.kind == "Real" else None
+        known = self.has_unit and self.kind == "Real"
+        return Stated(self.unit, self.definition, self.relative) if known else None
 
     def doubt(self, given: Any, where: str) -> str:
         """Return a warning about a number without unit, as `units.doubt` words it, or an empty text."""

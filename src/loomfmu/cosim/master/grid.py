@@ -70,7 +70,7 @@ def uniform(scene: Scene, share: float = 1.0) -> Grid:
         whole = uniform(scene)
         if whole.points is not None and crowded(scene, whole):
             places = np.linspace(0, whole.steps, max(1, round(share * whole.steps)) + 1)
-            return chosen(scene, whole.points[np.round(places).astype(int)])
+            return grid_of_points(scene, whole.points[np.round(places).astype(int)])
         steps = max(1, round(share * scene.steps))
         longer = scene.steps / steps
         equal = Grid(steps, longer * scene.step_size, scene.steps_per_period / longer)
@@ -79,7 +79,7 @@ def uniform(scene: Scene, share: float = 1.0) -> Grid:
     if not len(divided):
         return equal
     points = np.concatenate([equal.span(0, equal.steps).ends, divided * equal.step_size, [0.0]])
-    return chosen(scene, np.unique(points))
+    return grid_of_points(scene, np.unique(points))
 
 
 def crowded(scene: Scene, whole: Grid | None = None) -> bool:
@@ -193,7 +193,7 @@ def _rows(scene: Scene, turns: Iterable[float]) -> Floats:
     return times[(times > 0.0) & (times < scene.steps * scene.step_size)]
 
 
-def chosen(scene: Scene, points: Floats, notes: tuple[str, ...] = (), scouted: int = 0) -> Grid:
+def grid_of_points(scene: Scene, points: Floats, notes: tuple[str, ...] = (), scouted: int = 0) -> Grid:
     """Steps from point to point [s], strictly rising from 0."""
     largest = float(np.max(np.diff(points)))
     return Grid(len(points) - 1, largest, period(scene), np.ascontiguousarray(points), notes, scouted)

@@ -21,7 +21,7 @@ from ...errors import LoomfmuError
 from ...traces import Recording
 from ..claims.claim import EVERY_STEP, LANDINGS, Claim
 from ..claims.movers import movers_of
-from ..master.grid import Grid, chosen, kinks, period, uniform
+from ..master.grid import Grid, grid_of_points, kinks, period, uniform
 from ..scenes.graph import step_order
 from ..scenes.scene import Scene
 from .plan import InMemory
@@ -88,7 +88,7 @@ def window_grid(requested: Requested, scene: Scene, signals: Sequence[str], in_m
         f"steps: {period(scene) / places.most:.0f} per revolution{because}, plus steps that land"
         f" where the claims look; it took {scouted} FMU steps to find these",
     )
-    return chosen(scene, points, notes, scouted)
+    return grid_of_points(scene, points, notes, scouted)
 
 
 def _scouted(
@@ -104,7 +104,7 @@ def _scouted(
     for _ in range(SCOUTS):
         points = _merged(_equal(scene, coarse), places)
         recording, plan, steps, _early, _warnings = in_memory(
-            scene, _watched(requested, signals), chosen(scene, points)
+            scene, _watched(requested, signals), grid_of_points(scene, points)
         )
         scouted += len(plan.pruned.scene.instances) * steps
         places = Places(period(scene), longest, places.kinks)

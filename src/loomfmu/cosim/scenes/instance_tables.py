@@ -88,8 +88,9 @@ def _loom(tables: dict[str, Any], directory: Path) -> dict[str, dict[str, Any]]:
 
 
 def _set(instance: Instance, table: Mapping[str, Any]) -> None:
-    """Set its values, checked and in SI: a value of its own prevails over its machine's."""
-    for key in sorted(table, key=lambda key: key not in PARAMETER_SETS):
+    """Set its values, checked and in SI: a value of its own prevails over its machine's or its array's."""
+    whole = {key: key in PARAMETER_SETS or bool(instance.fmu.elements(key)) for key in table}
+    for key in sorted(table, key=lambda key: not whole[key]):
         if key != "component" and (key not in FILES or instance.fmu.built):
             instance.set(key, table[key])
     instance.settle()

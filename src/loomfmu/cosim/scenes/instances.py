@@ -1,7 +1,7 @@
 """An instance of a scene: its FMU, the values it starts with, and its name."""
 
 import re
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
@@ -55,11 +55,14 @@ class Instance:
             return
         if elements := self.fmu.elements(key):
             content = _flat(given)
+            last = elements[-1].own.removeprefix(elements[-1].array)
             if len(content) != len(elements):
-                shape = elements[-1].own.removeprefix(elements[-1].array)
                 raise LoomfmuError(
-                    f"{self.name}.{key} is an array up to {shape}: {len(elements)} values, not {len(content)}"
+                    f"{self.name}.{key} is an array up to {last}: {len(elements)} values, not {len(content)}"
                 )
+            shape = [int(each) for each in last.strip("[]").split(",")]
+            if _is_nested(given) and not _has_shape(given, shape):
+                raise LoomfmuError(f"{self.name}.{key} is an array up to {last}: write it row by row")
             for port, each in zip(elements, content, strict=True):
                 self.set(port.name, each)
             return
@@ -225,6 +228,18 @@ def altered(original: Copied, **others: Any) -> Copied:
 def _flat(given: Any) -> list[Any]:
     """The values of an array row by row, of lists in lists."""
     return [value for each in given for value in _flat(each)] if isinstance(given, list) else [given]
+
+
+def _is_nested(given: Any) -> bool:
+    """Return whether a list has lists in it."""
+    return isinstance(given, list) and any(isinstance(each, list) for each in given)
+
+
+def _has_shape(given: Any, shape: Sequence[int]) -> bool:
+    """Return whether lists in lists are as long as the dimensions of an array."""
+    if not shape or not isinstance(given, list):
+        return not shape and not isinstance(given, list)
+    return len(given) == shape[0] and all(_has_shape(each, shape[1:]) for each in given)
 
 
 def _can_be_set(port: Port) -> bool:

@@ -31,7 +31,6 @@ def of_scene(
             name, start = f"inputs.{drive.instance}.{drive.variable}", drive.periods[0]
             yield f"{name} begins at {start:g}, after the end at {end:g}: its first value holds throughout"
     yield from _unitless(instances, wires)
-    yield from _unitless(instances, wires)
     yield from _mixed(instances, wires)
     fed = {wire.sink for wire in wires} | {(drive.instance, drive.variable) for drive in drives}
     for name, each in instances.items() if "shaft" in instances else ():

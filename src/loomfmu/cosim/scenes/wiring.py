@@ -6,7 +6,7 @@ from typing import Any
 
 from ...components import COMPONENTS
 from ...declaring.variables import Terminal, Variable
-from ...errors import LoomfmuError, shown, suggestion
+from ...errors import LoomfmuError, listed, shown, suggestion
 from ..importing.conversions import SAME, Linear
 from ..importing.facts import ALL, Facts, facts_of
 from ..importing.ports import conversion
@@ -26,7 +26,12 @@ def wires_of(instances: dict[str, Instance], scene: Mapping[str, Any]) -> list[W
     spelt_out, driven = scene.get("wires", {}), scene.get("inputs")
     if not isinstance(spelt_out, dict):
         raise LoomfmuError('wires must be a table of "instance.input" = "instance.output"')
-    spelt = dotted(spelt_out)
+    spelt = dict[str, Any]()
+    for end, source in dotted(spelt_out).items():
+        sink = _own(instances, end)
+        if sink in spelt:
+            raise LoomfmuError(f"wires: {end!r} is {sink}, which has a wire; keep one of them")
+        spelt[sink] = source
     known = {name: instance.fmu.facts for name, instance in instances.items() if instance.fmu.facts}
     usual = usual_wires(known)
     sources: dict[str, Any] = {sink: each for sink, each in usual.items() if each.split(".")[0] in instances}
@@ -49,7 +54,7 @@ def wires_of(instances: dict[str, Instance], scene: Mapping[str, Any]) -> list[W
         else:
             sources[sink] = source
     pairs = (pair for sink, source in sources.items() for pair in elements(instances, sink, source))
-    wires = [wire(instances, sink, source) for sink, source in pairs]
+    wires = check_once([wire(instances, sink, source) for sink, source in pairs])
     fed = {each.sink for each in wires}
     for inheriting in instances.values():
         inheriting.inherit(instances, fed)
@@ -91,6 +96,23 @@ def wire(instances: dict[str, Instance], sink: str, source: Any, known: Linear |
     return Wire(source=ends[1], sink=ends[0], conversion=known)
 
 
+def check_once(wires: list[Wire]) -> list[Wire]:
+    """Return wires, each to an input of its own. Raises LoomfmuError for an input with two sources."""
+    sources: dict[tuple[str, str], Wire] = {}
+    for each in wires:
+        first = sources.setdefault(each.sink, each)
+        if first != each:
+            sink, *ends = (".".join(end) for end in (each.sink, first.source, each.source))
+            raise LoomfmuError(f"{sink} is wired twice, to {listed(ends)}; keep one wire")
+    return wires
+
+
+def _own(instances: Mapping[str, Instance], end: str) -> str:
+    """Return an end of a wire by the scene's name of its variable."""
+    name, _, variable = end.partition(".")
+    return f"{name}.{instances[name].fmu.name_of(variable)}" if name in instances else end
+
+
 def elements(instances: dict[str, Instance], sink: str, source: Any) -> list[tuple[str, Any]]:
     """The wires that one between arrays stands for, or itself."""
     parts = [str(end).partition(".") for end in (sink, source)]
@@ -113,7 +135,7 @@ def drives_of(instances: dict[str, Instance], wires: list[Wire], table: Any) -> 
     """
     if not isinstance(table, dict):
         raise LoomfmuError('inputs must be a table of "instance.input" = [[revolution, value], ...]')
-    drives = []
+    drives: list[Drive] = []
     wired = {each.sink for each in wires}
     for name, rows in dotted(table).items():
         owner, _, variable = name.partition(".")
@@ -122,6 +144,8 @@ def drives_of(instances: dict[str, Instance], wires: list[Wire], table: Any) -> 
         variable = instances[owner].fmu.name_of(variable)
         if (owner, variable) in wired:
             raise LoomfmuError(f'inputs.{name} is wired already; cut that wire with wires."{name}" = false')
+        if any((owner, variable) == (each.instance, each.variable) for each in drives):
+            raise LoomfmuError(f"inputs.{name} is a second table for {owner}.{variable}; keep one of them")
         drives.append(drive(name, instances[owner].fmu.port(variable, f"inputs.{name}"), rows))
     fed = wired | {(each.instance, each.variable) for each in drives}
     for name, instance in instances.items():

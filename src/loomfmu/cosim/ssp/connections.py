@@ -9,7 +9,7 @@ from ..importing.conversions import SAME, Linear, Stated
 from ..importing.ports import conversion
 from ..scenes.graph import Wire
 from ..scenes.instances import Instance
-from ..scenes.wiring import elements, wire
+from ..scenes.wiring import check_once, elements, wire
 from .structure import Node, connectors, dictionary, systems
 from .xml import full, required, suppressed, transformed
 
@@ -49,7 +49,10 @@ class Nets:
     ):
         self._instances, self._names, self._units = instances, names, units
         self._links: dict[Node, list[tuple[Node, Link]]] = {}
+        known: dict[frozenset[Node], Link] = {}
         for one, other, link in _connections(system, units):
+            if known.setdefault(frozenset((one, other)), link) != link:
+                raise LoomfmuError(f"{_dotted(one)} and {_dotted(other)} are connected in two different ways")
             self._links.setdefault(one, []).append((other, link))
             self._links.setdefault(other, []).append((one, link))
         self._causality = {node: _causality(node, instances, names) for node in self._links}
@@ -60,6 +63,9 @@ class Nets:
         sources: dict[Node, dict[Node, Linear]] = {}
         for output in [node for node, causality in self._causality.items() if causality == "output"]:
             for end in self._flow(output, self._unit(output)):
+                if self._causality[end.node] == "parameter":
+                    ends = f"{_dotted(output)} -> {_dotted(end.node)}"
+                    raise LoomfmuError(f"connection {ends}: an output cannot give the value of a parameter")
                 if self._causality[end.node] == "input":
                     sources.setdefault(end.node, {})[output] = end.conversion
         wires: list[Wire] = []
@@ -70,7 +76,7 @@ class Nets:
             for (path, connector), made in found.items():
                 pairs = elements(self._instances, name, f"{self._names[path]}.{connector}")
                 wires += [wire(self._instances, to, source, made) for to, source in pairs]
-        return list(dict.fromkeys(wires))
+        return check_once(list(dict.fromkeys(wires)))
 
     def reached(self, node: Node, unit: Stated | None) -> list[Reached]:
         """Return the variables that take a value of a system's connector, in a unit.
@@ -122,9 +128,11 @@ def _causality(node: Node, instances: dict[str, Instance], names: Names) -> str:
     if name is None:
         return ""
     fmu = instances[name].fmu
-    if array := fmu.elements(node[1]):
-        return array[0].causality
-    return fmu.port(fmu.name_of(node[1]), f"connection to {name}").causality
+    array = fmu.elements(node[1])
+    causality = (array or [fmu.port(fmu.name_of(node[1]), f"connection to {name}")])[0].causality
+    if causality not in ("output", "input", "parameter"):
+        raise LoomfmuError(f"connection to {_dotted(node)}: a {causality} cannot be connected")
+    return causality
 
 
 def _connections(system: Element, passing: Container[Node]) -> Iterator[tuple[Node, Node, Link]]:

@@ -21,7 +21,7 @@ from ..importing.descriptions import plain_names
 from ..importing.fmus import Fmu
 from ..importing.ports import conversion
 from ..scenes.instance_tables import overridden, override, prevailing, state_units, unit_of
-from ..scenes.instances import Instance, check_name
+from ..scenes.instances import TOLERANCE, Instance, check_name
 from ..scenes.scene import Scene, assemble
 from ..scenes.settings import DEEPEST, TIMES, toml
 from .connections import Nets
@@ -77,6 +77,9 @@ class _Reader:
         text = None if annotation is None else toml(annotation.text or "")
         stated = _stated(found, text or {}, overrides)
         instances = {name: self._instance(name, each.element, stated[name]) for name, each in found.items()}
+        for name, instance in instances.items():  # a structure has no place for these
+            if TOLERANCE in (own := (text or {}).get(name, {})) and not instance.fmu.ours:
+                instance.set(TOLERANCE, own[TOLERANCE])
         passing = joining(self.package, self.root, system)
         nets = Nets(system, instances, names, passing)
         for name, values in self._values(system, found, nets, passing).items():
@@ -182,9 +185,11 @@ class _Reader:
         ports = dict(fmu.ports)
         for connector in connectors(element):
             unit = stated_by(connector, self.units)
-            port = ports.get(fmu.name_of(required(connector, "name")))
-            if unit and port is not None and port.kind == "Real":
-                ports[port.name] = port.with_unit(unit.name, unit.definition, f"{name}.{port.name}")
+            own = required(connector, "name")
+            scalar = ports.get(fmu.name_of(own))
+            for port in fmu.elements(own) or ([scalar] if scalar else []):
+                if unit and port.kind == "Real":
+                    ports[port.name] = port.with_unit(unit.name, unit.definition, f"{name}.{port.name}")
         return replace(fmu, ports=ports)
 
     # ---- the rest

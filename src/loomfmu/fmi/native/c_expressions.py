@@ -88,6 +88,11 @@ REAL_FUNCTIONS = {
 AT_ROOT = "at_root"  # of the physics, which with dual numbers is one of dual.h
 WHOLE_FUNCTIONS = ("floor", "ceil", "trunc")
 TRUTH_FUNCTIONS = ("isfinite", "isinf", "isnan")
+INSTEAD = {
+    "abs": "; use fabs of math for a float",
+    "max": "; write a if a > b else b",
+    "min": "; write a if a < b else b",
+}
 
 
 class Expressions(Values):
@@ -207,7 +212,8 @@ class Expressions(Values):
         if name in ("list", "len") and len(node.args) == 1:
             return self.copied(node.args[0]) if name == "list" else self.length(node.args[0])
         if name not in self.scope.from_math:
-            raise Untranslatable(node, f"{name} is neither of math nor a function of the physics")
+            hint = INSTEAD.get(name, "")
+            raise Untranslatable(node, f"{name} is not a function of math, of physics or of this file{hint}")
         if len(node.args) != REAL_FUNCTIONS.get(name, 1):
             raise Untranslatable(node, f"{name} takes {REAL_FUNCTIONS.get(name, 1)} arguments")
         if name in REAL_FUNCTIONS:

@@ -10,7 +10,7 @@ from ...declaring.variables import Component
 from ...files import write_file
 from ...version import __version__
 from ..description.model_description import model_description, model_description3, output_order
-from ..fmu_files import FMU, HEADERS, beside, described, file_in, license_of, license_of_headers, zipped
+from ..fmu_files import FMU, HEADERS, described, file_in, files_near, license_of, license_of_headers, zipped
 from ..live_fmu import guid
 from .compiler import ARITHMETIC, MINGW, binaries, mingw_licence
 from .platforms import PLATFORMS
@@ -115,7 +115,7 @@ def archive(component: type[Component], platforms: tuple[str, ...], fmi: int = 2
 def contents(component: type[Component], platforms: tuple[str, ...], fmi: int) -> dict[str, bytes]:
     """All files of a native FMU by their names in it."""
     note = NOTE.format(command=COMMAND.format(name=component.__name__, fmi=fmi))
-    documents = beside(component, {"icon.png": ICONS[fmi]}) | described(component, note)
+    documents = files_near(component, {"icon.png": ICONS[fmi]}) | described(component, note)
     return assembled(component, guid(component), documents, sources(component, fmi), platforms, fmi)
 
 
