@@ -30,7 +30,10 @@ def _check(told: dict[str, Any], folder: Path) -> list[str]:
 
 
 def test_a_certificate_is_confirmed(told: dict[str, Any], tmp_path: Path) -> None:
-    assert _check(told, tmp_path) == ["margin", "dwell", "transfer"]
+    lines = _check(told, tmp_path)
+    names = ("margin", "dwell", "transfer")
+    assert [line.split(" (")[0] for line in lines] == [f"confirmed: {name}" for name in names]
+    assert "bound = 0.1) for all shaft angles, shaft.speed from 67.0206433 to 67.5442421 (SI)" in lines[0]
 
 
 def _wider(told: dict[str, Any]) -> None:
@@ -74,7 +77,45 @@ def _without_an_angle(told: dict[str, Any]) -> None:
     told["claims"][2]["conditions"][0].pop()
 
 
+def _another_side(told: dict[str, Any]) -> None:
+    told["over"]["shaft.start_angle"] = ["0x0p0", (1e-3).hex()]
+
+
+def _twice(told: dict[str, Any]) -> None:
+    told["over"] |= {
+        "heald_2.stroke": [(0.01).hex(), (0.9).hex()],
+        "heald.stroke": [(0.098).hex(), (0.0981).hex()],
+    }
+
+
+def _two_of_one_name(told: dict[str, Any]) -> None:
+    told["scene"] += '\n[[claims]]\nname = "margin"\nkind = "lowest_margin"\nbound = 0.99\n'
+
+
+def _code(told: dict[str, Any]) -> None:
+    told["texts"]["mine.py"] = "print(1)"
+
+
+def _a_file(told: dict[str, Any]) -> None:
+    told["scene"] += '\n[other]\nfmu = "/etc/other.fmu"\n'
+
+
+def _elsewhere(told: dict[str, Any]) -> None:
+    told["texts"]["../weave.wif"] = ""
+
+
+def _nothing(told: dict[str, Any]) -> None:
+    told["claims"] = []
+
+
 FORGED = [
+    (_another_side, "varies twice"),
+    (_twice, "varies twice"),
+    (_two_of_one_name, "under one name"),
+    (_code, "only the package's own mechanisms"),
+    (_a_file, "only the package's own mechanisms"),
+    (_elsewhere, "not the name of a file"),
+    (_nothing, "proves no claim"),
     (_wider, "is not confirmed"),
     (_missing, "a box is missing"),
     (_too_many, "more boxes"),
@@ -98,7 +139,7 @@ def test_a_forged_certificate_is_refused(
         _check(forged, tmp_path)
 
 
-@pytest.mark.parametrize("text", ["", "{}", '{"format": "loomfmu proof 9"}', "[1, 2]"])
+@pytest.mark.parametrize("text", ["", "{}", '{"format": "loomfmu proof 9"}', "[1, 2]", "[" * 5000])
 def test_what_is_no_certificate_is_refused_in_a_line(tmp_path: Path, text: str) -> None:
     (tmp_path / "proof.json").write_text(text)
     with pytest.raises(LoomfmuError, match=r"proof\.json"):

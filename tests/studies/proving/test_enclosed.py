@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from math import atan2, floor, sqrt
+from math import atan2, floor, sin, sqrt
 from typing import Any
 
 import mpmath
@@ -104,6 +104,9 @@ class Jumping(Component):
     angle: float = output("1", "The angle of a point that goes round")
     whole: float = output("1", "Its whole part")
     sign: float = output("1", "Its square, or the opposite of it below 0")
+    nothing: float = output("1", "0 times a root")
+    bounded: float = output("1", "The sine of an inverse")
+    clamped: float = output("1", "A root that is limited")
 
     def initialize(self, time: float) -> int:
         """Compute everything."""
@@ -120,6 +123,9 @@ class Jumping(Component):
         self.root = sqrt(self.x)
         self.angle = atan2(0.0 - self.x, -1.0)
         self.whole = 1.0 * floor(self.x)
+        self.nothing = 0.0 * sqrt(self.x)
+        self.bounded = sin(1.0 / self.x)
+        self.clamped = sqrt(self.x) if sqrt(self.x) < 1.0 else 1.0
         self.sign = self.x * self.x if self.x > 0.0 else -self.x * self.x
         return 0
 
@@ -135,6 +141,9 @@ ODD = [
     ("root", (0.25, 1.0), (0.5, 1.0), True),
     ("angle", (-0.1, 0.1), (-math.pi, math.pi), False),
     ("whole", (0.9, 1.1), (0.0, 1.0), False),
+    ("nothing", (-0.1, 0.1), (-math.inf, math.inf), False),
+    ("bounded", (-0.1, 0.1), (-math.inf, math.inf), False),
+    ("clamped", (-0.1, 0.1), (-math.inf, math.inf), False),
     ("sign", (-0.5, 0.5), (-0.25, 0.25), False),
 ]
 

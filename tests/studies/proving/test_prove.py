@@ -89,6 +89,8 @@ def test_a_loom_that_turns_backwards_is_proven_at_its_own_angles(loom: Scene) ->
         ),
         ({"over": ["heald_1.pattern_length=2..4"]}, "is not a real number"),
         ({"claims": ["margins"]}, "the scene has no claim"),
+        ({"boxes": 0}, "boxes = 0 is not a number of boxes"),
+        ({"over": ["shaft.start_angle=0deg..10deg"]}, "all shaft angles are proven"),
         ({"over": ["belt.head_mass=1g..2g", "belt.head_mass=2g..3g"]}, "both set"),
     ],
 )
@@ -122,3 +124,35 @@ def test_spans_are_proven_only_where_they_are_known(kinds: str, proven: bool) ->
     edges = np.arange(len(kinds) + 1.0)
     cells = np.array([KINDS[each] for each in kinds])
     assert bool(Spans(Linear(()), 1.5).doubtful(cells, edges).any()) != proven
+
+
+def test_a_start_up_that_varies_is_proven_over_time(loom: Scene) -> None:
+    # the corner of the third side is in no run that is tried: only the cover can see it
+    text = loom.text.replace("revolutions = 2", "revolutions = 30").replace("bound = 0.1", "bound = 0.3")
+    over = ["belt.bending_stiffness=0.25..0.4", "shaft.ramp_duration=1s..2s", "shaft.speed=300rpm..640rpm"]
+    scene = parse(text.replace("600 rev/min", "300 rev/min"), "loom")
+    (found,) = prove(scene, over=over, claims=["margin"], boxes=2000).claims
+    assert found.status != "proven"
+    corner = {"belt.bending_stiffness": 0.25, "shaft.ramp_duration": "1 s", "shaft.speed": "640 rpm"}
+    assert loomfmu.evaluate(scene, set=corner).claims[0].holds is False
+
+
+def test_an_extreme_that_is_held_in_a_window_is_not_proven(loom: Scene) -> None:
+    held = 'kind = "above"\nsignal = "belt.lowest_margin"\nwindow = ["300 deg", "30 deg"]'
+    scene = parse(loom.text.replace('kind = "lowest_margin"', held), "loom")
+    (found,) = prove(scene, claims=["margin"]).claims
+    assert "holds what was before the window" in found.why
+
+
+def test_an_undecided_run_refutes_nothing(loom: Scene) -> None:
+    scene = parse(loom.text.replace("revolutions = 2", "revolutions = 0.2"), "loom")
+    (found,) = prove(scene, claims=["margin"]).claims
+    assert found.status != "refuted"
+
+
+def test_values_that_are_set_stay_set_while_others_vary(loom: Scene) -> None:
+    heavier = {"belt.head_mass": "130 g"}
+    over = ["shaft.speed=500rpm..560rpm"]
+    assert prove(loom, set=heavier, over=over, claims=["margin"]).claims[0].status == "proven"
+    (found,) = prove(loom, set=heavier, over=["shaft.speed=500rpm..640rpm"], claims=["margin"]).claims
+    assert found.status == "refuted"

@@ -19,7 +19,7 @@ from ...traces import Signals, Verdict
 from ..standard import standard
 from .arguments import Bound, Edges, Flag, Name, Window, argument
 from .claim import AT_LEAST, AT_MOST, LANDINGS, Claim
-from .conditions import Condition, above, present
+from .conditions import Condition, Unprovable, above, present
 from .judging import Form, Question, needs_shaft
 from .movers import Wired
 
@@ -66,6 +66,8 @@ class Bounded(Claim, kind=False):
 
     def conditions(self, run: Wired) -> tuple[Condition, ...]:
         signal = present(self.signal, run, self.sense)
+        if self.window and signal != self.signal:
+            raise Unprovable(f"{self.signal} holds what was before the window")
         return (above(signal, self.bound, self.sense, self.window),)
 
 

@@ -36,10 +36,15 @@ class _Settled(ast.NodeTransformer):
     """Takes the branch that settings decide on, instead of both."""
 
     def __init__(self, tree: ast.Module, settings: Mapping[str, Any]):
-        self._known = {f"self.{name}": value for name, value in settings.items()}
+        functions = [node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)]
+        within = [node for each in functions if each.name != "__init__" for node in ast.walk(each)]
+        stored = {ast.unparse(node) for node in within if isinstance(getattr(node, "ctx", None), ast.Store)}
+        stored |= {node.arg for node in within if isinstance(node, ast.arg)}
+        known = {f"self.{name}": value for name, value in settings.items()}
         for node in tree.body:
             if isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant):
-                self._known[ast.unparse(node.targets[0])] = node.value.value
+                known[ast.unparse(node.targets[0])] = node.value.value
+        self._known = {name: value for name, value in known.items() if name not in stored}
 
     def visit_If(self, node: ast.If) -> Any:
         self.generic_visit(node)
@@ -62,6 +67,8 @@ class _Settled(ast.NodeTransformer):
         if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not):
             value = self._value(node.operand)
             return None if value is None else not value
+        if any(isinstance(each, ast.Call) for each in ast.walk(node)):
+            return None  # it may change something
         if isinstance(node, ast.BoolOp):
             values = [self._value(each) for each in node.values]
             decides = isinstance(node.op, ast.Or)
@@ -77,8 +84,14 @@ class _Settled(ast.NodeTransformer):
 class _Slice:
     def __init__(self, tree: ast.Module, entries: Iterable[str], wanted: Iterable[str]):
         self.tree = tree
-        self.functions = {node.name: node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)}
-        self.live: set[Place] = {(SELF, name) for name in wanted} | {(name, RETURNED) for name in entries}
+        methods = {id(each) for node in tree.body if isinstance(node, ast.ClassDef) for each in node.body}
+        self.functions = {
+            f"self.{node.name}" if id(node) in methods else node.name: node
+            for node in ast.walk(tree)
+            if isinstance(node, ast.FunctionDef) and node.name != "__init__" and not node.decorator_list
+        }
+        self.live: set[Place] = {(SELF, name) for name in wanted}
+        self.live |= {(f"self.{name}", RETURNED) for name in entries}
         self.kept: set[ast.stmt] = set()
         statements = [
             (name, parents, statement)
@@ -92,46 +105,43 @@ class _Slice:
                 if statement not in self.kept and self._matters(name, statement):
                     for each in (statement, *parents):
                         self._keep(name, each)
-        for name, function in self.functions.items():
-            if name != "__init__" and function.args.args != []:
-                function.body = self._left(function.body) or [ast.Pass()]
+        for function in self.functions.values():
+            function.body = self._left(function.body) or [ast.Pass()]
 
     def _matters(self, function: str, statement: ast.stmt) -> bool:
         if isinstance(statement, ast.Return):
             return (function, RETURNED) in self.live or self._has_effect(function)
         if isinstance(statement, ast.Break | ast.Continue):
             return True  # its loop may not be kept, and then neither is it
-        if isinstance(statement, ast.If | ast.While | ast.For):
-            return False  # for what is in it
-        targets = [node for node in ast.walk(statement) if isinstance(getattr(node, "ctx", None), ast.Store)]
-        called = (_called(node) for node in ast.walk(statement) if isinstance(node, ast.Call))
-        return any(place in self.live for node in targets for place in _places(function, node)) or any(
-            self._has_effect(name) for name in called
-        )
+        for node in _own_nodes(statement):
+            if isinstance(node, ast.Call) and self._has_effect(ast.unparse(node.func)):
+                return True
+            if isinstance(getattr(node, "ctx", None), ast.Store):
+                if isinstance(node, ast.Subscript):
+                    return True  # an element of an array, which may be the caller's
+                if any(place in self.live for place in _places(function, node)):
+                    return True
+        return False
 
     def _has_effect(self, function: str) -> bool:
         """Return whether what is kept of a function sets a variable of the component, or an array."""
         if function not in self.functions:
             return False
+        statements = (each for _, each in _statements(self.functions[function].body, ()))
         return any(
             (isinstance(node, ast.Attribute | ast.Subscript) and isinstance(node.ctx, ast.Store))
-            or (isinstance(node, ast.Call) and _called(node) != function and self._has_effect(_called(node)))
-            for _parents, statement in _statements(self.functions[function].body, ())
-            if statement in self.kept and not isinstance(statement, ast.If | ast.While | ast.For)
-            for node in ast.walk(statement)
+            or (isinstance(node, ast.Call) and self._has_effect(ast.unparse(node.func)))
+            for each in statements
+            if each in self.kept
+            for node in _own_nodes(each)
         )
 
     def _keep(self, function: str, statement: ast.stmt) -> None:
         self.kept.add(statement)
-        parts: list[ast.AST] = [statement]
-        if isinstance(statement, ast.If | ast.While):
-            parts = [statement.test]
-        elif isinstance(statement, ast.For):
-            parts = [statement.target, statement.iter]
-        for node in (node for part in parts for node in ast.walk(part)):
+        for node in _own_nodes(statement):
             self.live |= set(_places(function, node))
             if isinstance(node, ast.Call):
-                self.live.add((_called(node), RETURNED))
+                self.live.add((ast.unparse(node.func), RETURNED))
 
     def _left(self, body: list[ast.stmt]) -> list[ast.stmt]:
         found = []
@@ -163,6 +173,17 @@ def _statements(
             yield from _statements(getattr(statement, name, []), (*parents, statement))
 
 
+def _own_nodes(statement: ast.stmt) -> Iterator[ast.AST]:
+    """Yield the nodes of a statement, without those of the statements inside of it."""
+    parts: list[ast.AST] = [statement]
+    if isinstance(statement, ast.If | ast.While):
+        parts = [statement.test]
+    elif isinstance(statement, ast.For):
+        parts = [statement.target, statement.iter]
+    for part in parts:
+        yield from ast.walk(part)
+
+
 def _places(function: str, node: ast.AST) -> Iterator[Place]:
     """Yield the places that a node names: of the component's variables, and of its function's."""
     if isinstance(node, ast.Attribute) and of_self(node):
@@ -171,7 +192,3 @@ def _places(function: str, node: ast.AST) -> Iterator[Place]:
         yield function, node.id
     elif isinstance(node, ast.Subscript):
         yield from _places(function, node.value)
-
-
-def _called(node: ast.Call) -> str:
-    return node.func.attr if isinstance(node.func, ast.Attribute) else ast.unparse(node.func)

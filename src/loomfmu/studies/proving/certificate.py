@@ -20,7 +20,8 @@ def write(proofs: Proofs, path: Path, inputs: Sequence[Path] = (), overwrite: bo
 
     Proofs over time have none. Raises LoomfmuError if there is none to certify.
     """
-    certified = [proof for proof in proofs.claims if proof and proof.components]
+    names = [proof.claim for proof in proofs.claims]
+    certified = [each for each in proofs.claims if each and each.components and names.count(each.claim) == 1]
     if not certified:
         raise LoomfmuError(f"{path} is not written: no claim that a certificate can confirm is proven")
     scene = proofs.scene

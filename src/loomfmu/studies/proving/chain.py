@@ -135,7 +135,8 @@ class Chain:
         shaft = scene.instances[SHAFT]
         unsteady = shaft.fmu.component.unsteady if shaft.fmu.component else ()
         self._drives = {(each.instance, each.variable): each for each in needed.scene.drives}
-        self.timed = bool(self._drives) or any(map(shaft.start, unsteady))
+        varies = any(owner == SHAFT and name in unsteady for owner, name in sides)
+        self.timed = bool(self._drives) or varies or any(map(shaft.start, unsteady))
         self._scene, self._sides = scene, {**sides, (SHAFT, TIME if self.timed else START): 0}
         order, lagged = step_order(needed.scene.instances, needed.scene.wires)
         if lagged:

@@ -4,6 +4,7 @@ import ast
 import hashlib
 import json
 import math
+import re
 import tempfile
 from collections.abc import Iterator, Sequence
 from functools import partial
@@ -13,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from ...components import COMPONENTS
 from ...components.shaft_driven import FOLLOWING, ShaftDriven
 from ...cosim.claims.conditions import FALLS, IN, OUT, RISES, UNKNOWN, Condition, Linear, Spans, names_of
 from ...cosim.planning.pruning import prune
@@ -21,8 +23,9 @@ from ...cosim.scenes import scene as scenes
 from ...cosim.scenes.graph import step_order
 from ...cosim.scenes.instances import Instance
 from ...cosim.scenes.scene import Scene
+from ...cosim.scenes.settings import texts_in, toml
 from ...declaring.variables import MOTION, variables_of
-from ...errors import LoomfmuError
+from ...errors import LoomfmuError, shown
 from ...files import text_of
 from ...fmi import source
 from ...fmi.native.slicing import settings_of, sliced
@@ -42,29 +45,35 @@ class Refused(LoomfmuError):
 
 
 def check(path: str | Path) -> list[str]:
-    """Return the claims that a certificate proves, each confirmed. Raises Refused, a LoomfmuError."""
+    """Return a line for each claim that a certificate proves, confirmed. Raises Refused, a LoomfmuError."""
     try:
         told = json.loads(text_of(Path(path)))
         if told["format"] != FORMAT:
-            raise Refused(f"{path}: format = {told['format']!r} must be {FORMAT!r}")
-        return _Check(told).confirmed
+            raise Refused(f"format = {told['format']!r} must be {FORMAT!r}")
+        _check_harmless(told)
+        with tempfile.TemporaryDirectory() as folder:
+            for name, text in told["texts"].items():
+                (Path(folder) / name).parent.mkdir(parents=True, exist_ok=True)
+                (Path(folder) / name).write_text(text, encoding="utf-8")
+            return _Check(told, folder).lines
     except Refused as error:
         raise Refused(f"{path}: {error}") from None
-    except (ValueError, KeyError, TypeError, IndexError, AttributeError) as error:
+    except (
+        ValueError,
+        KeyError,
+        TypeError,
+        IndexError,
+        AttributeError,
+        RecursionError,
+        OverflowError,
+    ) as error:
         raise LoomfmuError(f"{path} is no certificate of a proof: {type(error).__name__} {error}") from None
 
 
 class _Check:
-    def __init__(self, told: dict[str, Any]):
-        with tempfile.TemporaryDirectory() as folder:
-            for name, text in told["texts"].items():
-                place = (Path(folder) / name).resolve()
-                if not place.is_relative_to(Path(folder).resolve()):
-                    raise Refused(f"{name} is outside of the scene's folder")
-                place.parent.mkdir(parents=True, exist_ok=True)
-                place.write_text(text, encoding="utf-8")
-            scene = scenes.parse(told["scene"], told["name"], told["overrides"], folder)
-            self._asked = requested(scene, None, "native")
+    def __init__(self, told: dict[str, Any], folder: str):
+        scene = scenes.parse(told["scene"], told["name"], told["overrides"], folder)
+        self._asked = requested(scene, None, "native")
         self._scene = scene = self._asked.scene
         self._ends = [(float.fromhex(low), float.fromhex(high)) for low, high in told["over"].values()]
         if not all(low < high and math.isfinite(high - low) for low, high in self._ends):
@@ -72,12 +81,22 @@ class _Check:
         self._sides: dict[tuple[str, ...], int] = {(SHAFT, START): 0}
         for place, (key, ends) in enumerate(zip(told["over"], self._ends, strict=True), 1):
             about = varied(scene, key)
-            for end in ends:  # refuses what cannot be
-                requested(scene, {key: about.setting(about.read(about.setting(end)))}, "native")
-            self._sides |= {tuple(each.split(".")): place for each in about.targets}
+            targets = {tuple(each.split(".")): place for each in about.targets}
+            if not targets or about.kind != "Real" or self._sides.keys() & targets:
+                raise Refused(f"{key} cannot vary in a proof, or varies twice")
+            for end in ends:
+                setting = {key: about.setting(about.read(about.setting(end)))}
+                moved = requested(scene, {**scene.overrides, **setting}, "native").scene
+                if follower := _follower(scene, moved, targets):
+                    raise Refused(f"{follower} changes with {key}")
+            self._sides |= targets
         self._equations = told["equations"]
+        ranges = zip(told["over"], self._ends, strict=True)
+        within = "".join(f", {key} from {low:.9g} to {high:.9g} (SI)" for key, (low, high) in ranges)
         names = [str(table.get("name") or table["kind"]) for table in scene.claims]
-        self.confirmed = []
+        self.lines: list[str] = []
+        if not told["claims"] or any(names.count(claim["name"]) != 1 for claim in told["claims"]):
+            raise Refused("it proves no claim that the scene has under one name")
         for claim in told["claims"]:
             conditions = self._asked.claims[names.index(claim["name"])].conditions(self._asked)
             if len(conditions) != len(claim["conditions"]):
@@ -87,7 +106,10 @@ class _Check:
             chain = _Mechanisms(scene, names_of(conditions), self._sides, self._equations)
             for condition, covers in zip(conditions, claim["conditions"], strict=True):
                 self._check(claim["name"], condition, covers, chain)
-            self.confirmed.append(claim["name"])
+            table = scene.claims[names.index(claim["name"])]
+            asked = ", ".join(f"{key} = {value}" for key, value in table.items() if key != "name")
+            line = f"confirmed: {claim['name']} ({asked}) for all shaft angles{within}"
+            self.lines.append(" ".join(line.split()))
 
     def _check(self, name: str, condition: Condition, covers: Sequence[Any], chain: "_Mechanisms") -> None:
         start = float(self._scene.instances[SHAFT].start(START) or 0.0)
@@ -110,6 +132,30 @@ class _Check:
             for box in list(_leaves((angles, *self._ends), iter(tree))):
                 if not _holds(chain, condition.any_of, box, FINER):
                     raise Refused(f"{name} is not confirmed for {_text(box)}")
+
+
+def _check_harmless(told: dict[str, Any]) -> None:
+    """Refuse a certificate that names files which are no text of its own: reading them may run code."""
+    named = [text for _place, text in (*texts_in(toml(told["scene"])), *texts_in(told["overrides"]))]
+    for text in [*named, *told["texts"]]:
+        if re.search(r"\.(py|fmu|ssp)\s*(:|$)", text, re.IGNORECASE):
+            raise Refused(
+                f"{shown(text)} is no part of a proof: only the package's own mechanisms are proven"
+            )
+    for name in told["texts"]:
+        if not re.fullmatch(r"(?!\.)[\w .-]{1,99}(/(?!\.)[\w .-]{1,99}){0,9}", name):
+            raise Refused(f"{shown(name)} is not the name of a file beside the scene")
+
+
+def _follower(scene: Scene, moved: Scene, targets: Any) -> str:
+    """Return a variable, other than these, that differs between two scenes; "" if none does."""
+    for name, each in moved.instances.items():
+        for variable in {*each.values, *scene.instances[name].values}:
+            if (name, variable) not in targets and each.start(variable) != scene.instances[name].start(
+                variable
+            ):
+                return f"{name}.{variable}"
+    return ""
 
 
 def _leaves(box: Box, tree: Iterator[int]) -> Iterator[Box]:
@@ -214,7 +260,10 @@ class _Mechanisms:
         for name in order:
             instance = needed.instances[name]
             component = instance.fmu.component
-            if component is None or component.keeps == MOTION or any(map(instance.start, component.unsteady)):
+            if not (instance.fmu.built and COMPONENTS.owns(component)) or component is None:
+                raise Refused(f"{name} is no mechanism of this package")
+            unsteady = any(instance.start(each) or (name, each) in sides for each in component.unsteady)
+            if component.keeps == MOTION or unsteady:
                 raise Refused(f"{name} depends on more than the shaft angle")
             if issubclass(component, ShaftDriven) and not instance.start(FOLLOWING):
                 raise Refused(f"{name} does not follow the shaft")
@@ -241,10 +290,14 @@ class _Mechanisms:
             sides = {key[1]: ".".join(key) for key in self._sides if key[0] == name}
             time = number(0.0) if name == SHAFT else Interval(ALL, [ALL] * len(box))
             place = joined(partial(_started, component, module, wanted, warnings))
-            wide, here = (
-                place(start | {variable: known[source] for variable, source in (wires | sides).items()}, time)
+            given = (
+                start | {variable: known[source] for variable, source in (wires | sides).items()}
                 for known in (found, middle)
             )
+            try:
+                wide, here = (place(each, time) for each in given)
+            except (TypeError, NameError) as error:
+                raise Refused(f"{name} cannot be confirmed: {error}") from None
             for variable, a, b in zip(wanted, wide, here, strict=True):
                 middle[f"{name}.{variable}"] = b
                 found[f"{name}.{variable}"] = _narrowed(a, b, box)
@@ -301,8 +354,10 @@ class _Numbers(ast.NodeTransformer):
 
 def _module(component: Any, wanted: Sequence[str], instance: Instance) -> dict[str, Any]:
     """Return a module that computes some outputs of a component with intervals."""
-    settings = settings_of(variables_of(component), instance.start)
-    tree = sliced(ast.parse(source.flatten(component)), ENTRIES, wanted, settings)
+    variables = variables_of(component)
+    settings = settings_of(variables, instance.start)
+    members = [each.member.partition("[")[0] for each in variables if each.name in wanted]
+    tree = sliced(ast.parse(source.flatten(component)), ENTRIES, members, settings)
     constants = {name: number(getattr(math, name)) for name in ("pi", "inf", "e", "tau")}
     space: dict[str, Any] = {"number": number, **constants, **MATH}
     tree.body = [node for node in tree.body if not isinstance(node, ast.ImportFrom)]

@@ -64,18 +64,14 @@ static void join({0} &a, const {0} &b)
 {{
     {2}
 }}
-
-static void forget({0} &a)
-{{
-    {3}
-}}
 """
 
 
 def program(component: type[Component], wanted: Sequence[str], settings: Mapping[str, Any]) -> str:
     """Return the C++ of all that some outputs depend on with some settings."""
-    written, name = translate_slice(component, wanted, settings), component.__name__
     variables = variables_of(component)
+    members = [each.member.partition("[")[0] for each in variables if each.name in wanted]
+    written, name = translate_slice(component, members, settings), component.__name__
     puts = [f"    case {len(variables)}: *time = value; break;"]
     gets = []
     for place, variable in enumerate(variables):
@@ -147,7 +143,6 @@ def _joins(*structs: str) -> str:
                 name,
                 " && ".join(f"alike(a.{each}, b.{each})" for each in names),
                 " ".join(f"join(a.{each}, b.{each});" for each in names),
-                " ".join(f"forget(a.{each});" for each in names),
             )
         )
     return "".join(texts)

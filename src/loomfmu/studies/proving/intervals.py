@@ -19,15 +19,22 @@ ctx.prec = 80  # bits: a function of an end is then off by less than the roundin
 
 
 class Unknown(Exception):
-    """More ways than are tried, or a number that is not defined everywhere."""
+    """More ways than are tried, or a number that is not defined everywhere: nothing is known of the box."""
 
 
 def _outwards(low: float, high: float) -> Ends:
     return (math.nextafter(low, -math.inf), math.nextafter(high, math.inf)) if low <= high else ALL
 
 
+def _times(x: float, y: float) -> float:
+    """Multiply bounds: an infinite one is no value, and a product of others is not 0."""
+    if not x or not y:
+        return 0.0
+    return x * y or math.copysign(5e-324, x) * math.copysign(1.0, y)
+
+
 def _product(a: Ends, b: Ends) -> Ends:
-    every = [x * y if x and y else 0.0 for x in a for y in b]
+    every = [_times(x, y) for x in a for y in b]
     low, high = min(every), max(every)
     low, high = (
         (low if low == 0.0 else math.nextafter(low, -math.inf)),
@@ -196,8 +203,10 @@ class Interval:
     def __truediv__(self, other: Any) -> "Interval":
         b = number(other)
         part = _inverse(b.ends, b.not_zero)
-        ends = ALL if part == ALL else _product(self.ends, part)
-        low, high = ALL if part == ALL else _product(ends, part)
+        if part == ALL:
+            raise Unknown
+        ends = _product(self.ends, part)
+        low, high = _product(ends, part)
         return _of((self, part), (b, (-high, -low)), ends=ends, not_zero=self.not_zero)
 
     def __sub__(self, other: Any) -> "Interval":
@@ -295,16 +304,29 @@ def _ends(ball: Any) -> Ends:
     return math.nextafter(float(ball.lower()), -math.inf), math.nextafter(float(ball.upper()), math.inf)
 
 
+DOMAINS: dict[str, Ends] = {
+    "sqrt": (0.0, math.inf),
+    "acos": (-1.0, 1.0),
+    "asin": (-1.0, 1.0),
+    "log": (1e-300, 1e308),
+}
+
+
 def _at(name: str, x: Ends) -> Ends:
-    """A function over all values between two ends: at the ends, where it only rises."""
-    if name in ("sin", "cos") and all(map(math.isfinite, x)):
+    """A function over all values between two ends: at the ends, where it only rises. Raises Unknown."""
+    if name in ("sin", "cos"):
+        if not all(map(math.isfinite, x)):
+            return -1.0, 1.0
         low, high = _ends(getattr(arb(x[0]).union(arb(x[1])), name)())
         return max(low, -1.0), min(high, 1.0)
-    if name in ("sin", "cos"):
-        return -1.0, 1.0
-    first, last = (_ends(getattr(arb(end), name)()) if math.isfinite(end) else (end, end) for end in x)
-    low, high = (last[0], first[1]) if name == "acos" else (first[0], last[1])
-    return (low, high) if ALL not in (first, last) else ALL
+    first, last = DOMAINS.get(name, (-700.0, 700.0))
+    if not first <= x[0] <= x[1] <= last:
+        raise Unknown
+    at_first, at_last = (_ends(getattr(arb(end), name)()) if math.isfinite(end) else (end, end) for end in x)
+    low, high = (at_last[0], at_first[1]) if name == "acos" else (at_first[0], at_last[1])
+    if name == "sqrt":
+        low = max(low, 0.0)
+    return low, high
 
 
 def _square(x: Ends) -> Ends:
@@ -336,7 +358,7 @@ def _function(name: str) -> Callable[[Any], Interval]:
     def call(value: Any) -> Interval:
         x = number(value)
         ends = _at(name, x.ends)
-        return _of((x, ALL if ends == ALL else SLOPES[name](x.ends, ends)), ends=ends)
+        return _of((x, SLOPES[name](x.ends, ends)), ends=ends)
 
     return call
 
@@ -352,7 +374,9 @@ def fabs(value: Any) -> Interval:
 def atan2(of: Any, beside: Any) -> Interval:
     """Return the angle of a point, which jumps behind the origin."""
     y, x = number(of), number(beside)
-    if not (x.ends[0] > 0.0 or y.ends[0] > 0.0 or y.ends[1] < 0.0) or ALL in (x.ends, y.ends):
+    if ALL in (x.ends, y.ends):
+        raise Unknown
+    if not (x.ends[0] > 0.0 or y.ends[0] > 0.0 or y.ends[1] < 0.0):
         return Interval((-math.pi - 1e-15, math.pi + 1e-15), [ALL] * Interval.sides)
     ball = [arb(each.ends[0]).union(arb(each.ends[1])) for each in (y, x)]
     squares = (_square(each.ends) for each in (y, x))

@@ -104,6 +104,9 @@ def prove(
     sides = [span_of(asked.scene, text) for text in over]
     if len(sides) >= LARGEST_BOX:
         raise LoomfmuError(f"over has {len(sides)} parameters; at most {LARGEST_BOX - 1} vary together")
+    for side in sides:
+        if f"{SHAFT}.{START}" in side.varied.targets:
+            raise LoomfmuError(f"{side.key} cannot vary in a proof: all shaft angles are proven")
     if twice := set_twice(sides):
         raise LoomfmuError(f"{twice[0].key} and {twice[1].key} both set {twice[2]}")
     for side in sides:
@@ -112,6 +115,8 @@ def prove(
     for name in claims or ():
         if name not in names:
             raise LoomfmuError(f"the scene has no claim {shown(name)}; it has {', '.join(names)}")
+    if boxes < 1:
+        raise LoomfmuError(f"boxes = {boxes} is not a number of boxes")
     wanted = [number for number, name in enumerate(names) if claims is None or name in claims]
     with Prepared(asked.scene, None, "native", ()) as loom:
         search = _Search(asked, loom, sides, boxes)
@@ -124,7 +129,7 @@ def _check_follows(scene: Scene, span: Span) -> None:
     if span.varied.kind != "Real" or not span.varied.targets:
         raise LoomfmuError(f"{span.key} cannot vary in a proof: it is not the value of a parameter")
     for value in (span.low, span.high):
-        moved = requested(scene, span.setting(value), "native").scene
+        moved = requested(scene, {**scene.overrides, **span.setting(value)}, "native").scene
         for name, each in moved.instances.items():
             for variable in {*each.values, *scene.instances[name].values}:
                 changes = each.start(variable) != scene.instances[name].start(variable)
@@ -242,7 +247,7 @@ class _Search:
         """Return the values of the first run in which the claim fails."""
         shown_as = {side.key: side.show for side in self._sides}
         for values, run in runs:
-            if run.claims[number].holds is False:
+            if run.claims[number].decided and not run.claims[number].holds:
                 return {key: shown_as[key](value) for key, value in values.items()}
         return None
 

@@ -27,11 +27,6 @@ static void join(begun &a, const begun &b)
     join(a.self, b.self);
 }
 
-static void forget(begun &a)
-{
-    forget(a.status);
-}
-
 static bool alike(const outputs &, const outputs &)
 {
     return true; /* all of them are numbers */
@@ -40,11 +35,6 @@ static bool alike(const outputs &, const outputs &)
 static void join(outputs &a, const outputs &b)
 {
     join(a.at, b.at);
-}
-
-static void forget(outputs &a)
-{
-    forget(a.at);
 }
 
 static enclosure read(const double *row)
@@ -94,34 +84,31 @@ extern "C" EXPORT void enclose(int64_t rows, int64_t size, int64_t fixed, int64_
 {
     const int64_t width = 2 + 2 * size;
     static begun first;
-    volatile bool failed = false;
-    frame outermost{};
+    volatile bool begins_once = false; /* where it can begin without the other inputs */
     box_size = (int)size;
-    if (setjmp(outermost.given_up)) {
-        failed = true;
-    } else if (once) {
-        present = &outermost;
+    if (once && !setjmp(given_up)) {
+        present = nullptr;
         first = joined<begun>([=]() { return started(begun{}, false, fixed, to, inputs); });
-        failed = !harmless(first.status, count, warnings);
+        begins_once = harmless(first.status, count, warnings);
     }
     for (volatile int64_t row = 0; row < rows; row = row + 1) {
         double *result = results + row * wanted * width;
         for (int64_t i = 0; i < wanted * width; i++) {
             result[i] = i % 2 ? INFINITY : -INFINITY;
         }
-        outermost = frame{};
         serial = fresh += UINT64_C(1) << 28; /* no value of this row is one of another */
-        if (failed || setjmp(outermost.given_up)) {
+        if (setjmp(given_up)) {
             continue;
         }
-        present = &outermost;
-        const int64_t skipped = once ? fixed : 0;
+        present = nullptr;
+        const bool again = begins_once;
+        const int64_t skipped = again ? fixed : 0;
         const double *own = inputs + (row * given + skipped) * width;
         const outputs found = joined<outputs>([=]() {
-            const begun made = started(once ? first : begun{}, once, given - skipped, to + skipped, own);
+            const begun made = started(again ? first : begun{}, again, given - skipped, to + skipped, own);
             outputs shown;
             if (!harmless(made.status, count, warnings)) {
-                longjmp(present->caller->given_up, 1);
+                give_up();
             }
             for (int i = 0; i < OUTPUTS; i++) {
                 shown.at[i] = got(&made.self, from[i]);

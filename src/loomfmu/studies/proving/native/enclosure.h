@@ -1,8 +1,8 @@
 /* Enclosures: all values that a number may have in a box of parameters, with its slopes by these.
  *
  * The C of a component, compiled as C++ with `enclosure` for `double`, then computes what holds for all points
- * of a box. Bounds are rounded outwards; what is not defined everywhere in the box has no bounds at all, so
- * that nothing follows from it.
+ * of a box. Bounds are rounded outwards. What is not defined everywhere in the box, or takes too many ways, gives
+ * the whole box up, so that nothing follows from it.
  *
  * A comparison that the box leaves undecided is decided both ways, one after the other: `joined` calls a
  * function again and again until all its ways are done, and joins what they return. In each way, the number
@@ -15,7 +15,7 @@
 #include <setjmp.h>
 
 #define LARGEST_BOX 8 /* parameters of a box, the shaft angle included */
-#define MOST_WAYS 64 /* of a function, before its result counts as unknown */
+#define MOST_WAYS 64 /* of a function */
 #define MOST_DECISIONS 12 /* in one way */
 #define LIBRARY_ERROR 4.0 /* largest error of a function of libm, in units of the last place; tested */
 
@@ -28,10 +28,16 @@ struct frame {
     uint64_t serial; /* of the first value of each way */
     int depth, decisions;
     int choice[MOST_DECISIONS], choices[MOST_DECISIONS];
-    jmp_buf given_up;
 };
 static frame *present = nullptr;
+static jmp_buf given_up; /* of the present box */
 static uint64_t serial = 0, fresh = 0; /* values of one serial are one value, see `joined` */
+
+/* Nothing can be said of this box. */
+[[noreturn]] static void give_up()
+{
+    longjmp(given_up, 1);
+}
 
 /* One of several ways, each in its turn. */
 static int way_of(int ways)
@@ -39,9 +45,12 @@ static int way_of(int ways)
     if (ways == 1) {
         return 0;
     }
+    if (present == nullptr) {
+        give_up(); /* a component that ends its start in several states */
+    }
     frame &here = *present;
     if (here.depth == MOST_DECISIONS || ways > MOST_WAYS) {
-        longjmp(here.given_up, 1);
+        give_up();
     }
     if (here.depth == here.decisions) {
         here.choice[here.depth] = 0;
@@ -112,7 +121,11 @@ static inline bool nothing(span a)
 
 static inline double multiplied(double x, double y)
 {
-    return x == 0.0 || y == 0.0 ? 0.0 : x * y; /* an infinite bound is no value */
+    if (x == 0.0 || y == 0.0) {
+        return 0.0; /* an infinite bound is no value */
+    }
+    const double product = x * y;
+    return product == 0.0 ? copysign(0x1p-1074, product) : product;
 }
 
 static inline span operator*(span a, span b)
@@ -250,8 +263,11 @@ static inline enclosure operator*(const enclosure &x, const enclosure &y)
 static inline enclosure operator/(const enclosure &x, const enclosure &y)
 {
     const span part = over(y.value, y.not_zero);
-    const span value = is_open(part) ? part : x.value * part;
-    enclosure made = through(x, y, value, part, is_open(part) ? part : -(value * part));
+    if (is_open(part)) {
+        give_up(); /* it may be divided by 0 */
+    }
+    const span value = x.value * part;
+    enclosure made = through(x, y, value, part, -(value * part));
     made.not_zero = x.not_zero;
     return made;
 }
@@ -351,12 +367,14 @@ static inline span within(span a, double low, double high)
     return {a.low < low ? low : a.low, a.high > high ? high : a.high};
 }
 
-/* A function that rises, or falls, from `first` to `last`; outside it is not defined. */
+/* A function that rises from `first` to `last`; outside it is not defined, or not computed. */
 #define RISING(name, first, last) \
     static inline span span_##name(span x) \
     { \
-        return x.low >= (first) && x.high <= (last) ? wide({name(x.low), name(x.high)}) \
-                                                     : span{-INFINITY, INFINITY}; \
+        if (!(x.low >= (first) && x.high <= (last))) { \
+            give_up(); \
+        } \
+        return wide({name(x.low), name(x.high)}); \
     }
 RISING(sqrt, 0.0, INFINITY)
 RISING(asin, -1.0, 1.0)
@@ -372,14 +390,18 @@ RISING(asinh, -1e300, 1e300)
 
 static inline span span_acos(span x)
 {
-    return x.low >= -1.0 && x.high <= 1.0 ? wide({acos(x.high), acos(x.low)}) : span{-INFINITY, INFINITY};
+    if (!(x.low >= -1.0 && x.high <= 1.0)) {
+        give_up();
+    }
+    return wide({acos(x.high), acos(x.low)});
 }
 
 static inline span span_cosh(span x)
 {
     const double nearest = x.low > 0.0 ? x.low : x.high < 0.0 ? x.high : 0.0;
     const double farthest = fabs(x.low) > fabs(x.high) ? x.low : x.high;
-    return is_open(span_sinh(x)) ? span{-INFINITY, INFINITY} : wide({cosh(nearest), cosh(farthest)});
+    span_sinh(x); /* gives up where it is too large */
+    return wide({cosh(nearest), cosh(farthest)});
 }
 
 /* The sine: is one of its crests, at pi/2 + 2 n pi, in the span, and one of its troughs? In doubt both are. */
@@ -420,9 +442,10 @@ static inline span span_fabs(span x)
     return {x.low <= 0.0 && x.high >= 0.0 ? 0.0 : low < high ? low : high, low > high ? low : high};
 }
 
-static inline span complement(span y) /* 1 - y^2 */
+static inline span complement(span y) /* 1 - y^2, of what is not above 1 */
 {
-    return ONE + -squared(y);
+    const span rest = ONE + -squared(y);
+    return {fmax(rest.low, 0.0), fmax(rest.high, 0.0)};
 }
 
 /* Functions of one number x, each with its slope there, where its values are y. */
@@ -431,7 +454,7 @@ static inline span complement(span y) /* 1 - y^2 */
     { \
         const span x = number.value, y = span_##name(x); \
         (void)x; \
-        return through(number, y, is_open(y) ? y : (by_x)); \
+        return through(number, y, by_x); \
     }
 FUNCTION(sqrt, over(span{2.0, 2.0} * y))
 FUNCTION(sin, span_cos(x))
@@ -460,7 +483,7 @@ static enclosure atan2(const enclosure &y, const enclosure &x)
 {
     const span a = y.value, b = x.value;
     if (!(b.low > 0.0 || a.low > 0.0 || a.high < 0.0)) {
-        return without_slopes(wide({-3.141592653589793, 3.141592653589793}));
+        return without_slopes(wide({-3.141592653589793, 3.141592653589793})); /* 0 at the origin, as in Python */
     }
     double low = INFINITY, high = -INFINITY;
     for (int corner = 0; corner < 4; corner++) {
@@ -495,7 +518,7 @@ static inline whole trunc(const enclosure &x)
 static int64_t python_whole(whole number)
 {
     if (!(number.high - number.low < MOST_WAYS && fabs(number.low) < 1e15)) {
-        longjmp(present->given_up, 1);
+        give_up();
     }
     return (int64_t)number.low + way_of((int)(number.high - number.low) + 1);
 }
@@ -525,7 +548,7 @@ static enclosure copysign(const enclosure &x, enclosure sign)
     return sign >= enclosure(0.0) ? fabs(x) : -fabs(x);
 }
 
-PYTHON_ITEM(float, enclosure, unknown())
+PYTHON_ITEM(float, enclosure, (give_up(), unknown()))
 
 /* ---- results */
 
@@ -561,22 +584,6 @@ static inline void join(int64_t &, int64_t) {}
 
 static inline void join(bool &, bool) {}
 
-static inline void forget(enclosure &a)
-{
-    a = unknown();
-}
-
-/* What no search can tell is not known; a choice that depends on it is the caller's. */
-static inline void forget(int64_t &)
-{
-    longjmp(present->given_up, 1);
-}
-
-static inline void forget(bool &)
-{
-    longjmp(present->given_up, 1);
-}
-
 template <class T, int n> static inline bool alike(const T (&a)[n], const T (&b)[n])
 {
     for (int i = 0; i < n; i++) {
@@ -594,13 +601,6 @@ template <class T, int n> static inline void join(T (&a)[n], const T (&b)[n])
     }
 }
 
-template <class T, int n> static inline void forget(T (&a)[n])
-{
-    for (int i = 0; i < n; i++) {
-        forget(a[i]);
-    }
-}
-
 #define MOST_KINDS 4 /* results of a function that differ in a whole number or a truth value */
 
 /* The results of all ways of a function: those that agree in whole numbers and truth values become one. */
@@ -608,25 +608,19 @@ template <class Result, class Function> static Result joined(Function function)
 {
     frame here;
     Result results[MOST_KINDS];
-    volatile int kinds = 0, ways = 0;
+    int kinds = 0, ways = 0;
     here.caller = present;
     here.serial = serial;
     here.depth = here.decisions = 0;
     present = &here;
-    if (setjmp(here.given_up)) {
-        present = here.caller;
-        serial = fresh += UINT64_C(1) << 28;
-        forget(results[0]);
-        return results[0];
-    }
     do {
         const Result found = function();
         int kind = 0;
         while (kind < kinds && !alike(results[kind], found)) {
             kind++;
         }
-        if (kind == MOST_KINDS || (ways = ways + 1) > MOST_WAYS) {
-            longjmp(here.given_up, 1);
+        if (kind == MOST_KINDS || ++ways > MOST_WAYS) {
+            give_up();
         }
         if (kind == kinds) {
             results[kind] = found;
