@@ -116,7 +116,7 @@ def stated(name: str, definition: Definition | None) -> Stated | None:
     """Return a unit that is stated so; None for an empty name.
 
     >>> stated("[m3]", None), stated("", None)
-    (Stated(name='m3', definition=None), None)
+    (Stated(name='m3', definition=None, relative=False), None)
     """
     if not name:
         return None
