@@ -53,7 +53,7 @@ class Definition:
         return replace(self, exponents=(*self.exponents[:-1], 0))
 
 
-# scales that do not begin at 0 are no units of ours: differences have no such offset
+# scales with an offset are not among our units, which serve for differences, too
 SCALES = {"degC": Definition((0, 0, 0, 0, 1, 0, 0, 0), 1.0, 273.15)}
 
 
@@ -115,6 +115,8 @@ class Stated:
 def stated(name: str, definition: Definition | None) -> Stated | None:
     """Return a unit that is stated so; None for an empty name.
 
+    One that is called like one of ours, but defined otherwise, is foreign.
+
     >>> stated("[m3]", None), stated("", None)
     (Stated(name='m3', definition=None, relative=False), None)
     """
@@ -124,4 +126,6 @@ def stated(name: str, definition: Definition | None) -> Stated | None:
     if known:
         return Stated(known, own_definition(known))
     bare = units.canonical(name)
+    if bare in units.UNITS:  # defined otherwise: under our name it would be read as ours everywhere
+        bare = f"foreign {bare}"
     return Stated(bare, definition or SCALES.get(bare))
