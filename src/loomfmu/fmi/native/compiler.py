@@ -6,6 +6,8 @@ import subprocess
 import sys
 import tempfile
 import zipfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from threading import BoundedSemaphore
 
@@ -18,22 +20,12 @@ from .sources import code_of
 
 # no fused multiply-add, as in Python; integers wrap alike in every build
 ARITHMETIC = ("-O2", "-ffp-contract=off", "-fwrapv")
-FLAGS = ("-shared", "-std=c99", *ARITHMETIC, "-g0", "-s", "-fno-sanitize=all")
+PLAIN = (*ARITHMETIC, "-g0", "-s", "-fno-sanitize=all")
+FLAGS = ("-shared", "-std=c99", *PLAIN)
 # a module of WebAssembly without imports; it exports what its source says
-MODULE = ("wasm32-wasi", "-mexec-model=reactor", "-std=c99", *ARITHMETIC, "-g0", "-s", "-fno-sanitize=all")
-BOXES = (
-    "-shared",
-    "-std=c++17",
-    "-fno-exceptions",
-    "-fno-rtti",
-    "-nostdlib++",
-    *ARITHMETIC,
-    "-g0",
-    "-s",
-    "-fno-sanitize=all",
-    "-fPIC",
-    "-Wno-address-of-temporary",
-)
+MODULE = ("wasm32-wasi", "-mexec-model=reactor", "-std=c99", *PLAIN)
+# C++ that needs no library of its own, with C of ours in it
+CPLUSPLUS = ("-std=c++17", "-fno-exceptions", "-fno-rtti", "-nostdlib++", "-Wno-address-of-temporary")
 MINGW = "mingw-w64.txt"  # the licence of what the compiler links into a DLL beside our own
 
 # two more than cores: some wait for one that makes the system's libraries for the first time
@@ -54,21 +46,17 @@ def binaries(name: str, fmi: int, code: dict[str, str], platforms: tuple[str, ..
 
 def web_assembly(source: str, code: dict[str, str]) -> bytes:
     """A file of some code as a module of WebAssembly. Raises LoomfmuError as `library`."""
-    with tempfile.TemporaryDirectory(prefix="loomfmu-") as directory:
-        for file, text in code.items():
-            (Path(directory) / file).write_text(text, encoding="utf-8")
+    with _folder(code) as directory:
         output = Path(source).with_suffix(".wasm")
-        _call([*MODULE, "-o", str(output), source], Path(directory), output.stem)
-        return (Path(directory) / output).read_bytes()
+        _call([*MODULE, "-o", str(output), source], directory, output.stem)
+        return (directory / output).read_bytes()
 
 
 def of_boxes(source: str, code: dict[str, str]) -> bytes:
     """A file of C++ that uses libm alone, as a shared library for this machine. Raises as `library`."""
-    with tempfile.TemporaryDirectory(prefix="loomfmu-") as name:
-        directory, output = Path(name), Path(f"{Path(source).stem}{HERE.suffix}")
-        for file, text in code.items():
-            (directory / file).write_text(text, encoding="utf-8")
-        _call([*HERE.targets, *BOXES, "-o", str(output), source], directory, output.stem)
+    with _folder(code) as directory:
+        output, (target,) = Path(source).with_suffix(HERE.suffix), HERE.targets
+        _compile(source, output, target, directory, ("-shared", *CPLUSPLUS, *PLAIN))
         return (directory / output).read_bytes()
 
 
@@ -96,11 +84,8 @@ def library(source: Path, platform: str) -> bytes:
     is no compiler, or if compilation fails.
     """
     wanted = PLATFORMS.get(platform, HERE)
-    with tempfile.TemporaryDirectory(prefix="loomfmu-") as name:
-        directory, output = Path(name), Path(f"{source.stem}{wanted.suffix}")
-        for file, text in code_of(source).items():
-            (directory / file).write_text(text, encoding="utf-8")
-        parts = []
+    with _folder(code_of(source)) as directory:
+        output, parts = Path(f"{source.stem}{wanted.suffix}"), []
         for target in wanted.targets:
             _compile(source.name, output, target, directory)
             parts.append((directory / output).read_bytes())
@@ -128,12 +113,9 @@ def _compiled(name: str, fmi: int, code: dict[str, str], platforms: tuple[str, .
     from concurrent.futures import ThreadPoolExecutor  # what is built already needs none
 
     targets = [target for platform in platforms for target in PLATFORMS[platform].targets]
-    with tempfile.TemporaryDirectory(prefix="loomfmu-") as directory:
-        for file, text in code.items():
-            (Path(directory) / file).write_text(text, encoding="utf-8")
-        with ThreadPoolExecutor() as pool:
-            made = pool.map(lambda target: _library_of(name, fmi, target, Path(directory)), targets)
-            libraries = dict(zip(targets, made, strict=True))
+    with _folder(code) as directory, ThreadPoolExecutor() as pool:
+        made = pool.map(lambda target: _library_of(name, fmi, target, directory), targets)
+        libraries = dict(zip(targets, made, strict=True))
     found = {}
     for platform in platforms:
         parts = [libraries[target] for target in PLATFORMS[platform].targets]
@@ -152,10 +134,19 @@ def _library_of(name: str, fmi: int, target: str, directory: Path) -> bytes:
     return (directory / output).read_bytes()
 
 
-def _compile(source: str, output: Path, target: str, directory: Path) -> None:
+@contextmanager
+def _folder(code: dict[str, str]) -> Iterator[Path]:
+    """A folder with these files, for as long as they are compiled."""
+    with tempfile.TemporaryDirectory(prefix="loomfmu-") as name:
+        for file, text in code.items():
+            Path(name, file).write_text(text, encoding="utf-8")
+        yield Path(name)
+
+
+def _compile(source: str, output: Path, target: str, directory: Path, flags: tuple[str, ...] = FLAGS) -> None:
     """Compile a file into a shared library. Paths are relative, so that none gets into it."""
     options = [option.format(name=output.stem) for option in platform_of(target).options]
-    _call([target, *FLAGS, "-o", str(output), source, *options], directory, output.stem)
+    _call([target, *flags, "-o", str(output), source, *options], directory, output.stem)
 
 
 def _call(arguments: list[str], directory: Path, name: str) -> None:
