@@ -36,7 +36,7 @@ ABOUT: dict[str, dict[str, str | None]] = {
     ".png": {"Software": MAKER},
 }
 BOUND = "#1a1a1a"
-DOTS = 200  # of an inch
+
 LETTERS = 85  # of a line of the title
 WIDTH, PANEL, REST = 8.0, 2.6, 0.6  # of a picture of one panel or more [in]
 
@@ -67,7 +67,9 @@ def content(figure: Any, suffix: str, title: str) -> bytes:
     """A figure of matplotlib as the content of a file, the same whenever it is drawn."""
     drawn = BytesIO()
     with plotting.fixed_style(**{"svg.hashsalt": "loomfmu"}):  # else the names within an SVG are random
-        figure.savefig(drawn, format=suffix[1:], dpi=DOTS, metadata={"Title": title, **ABOUT[suffix]})
+        figure.savefig(
+            drawn, format=suffix[1:], dpi=plotting.DOTS, metadata={"Title": title, **ABOUT[suffix]}
+        )
     return drawn.getvalue()
 
 

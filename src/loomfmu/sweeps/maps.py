@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from .. import units
 from ..files import PICTURE, write_file
-from ..traces.plotting import COLOURS, fixed_style
+from ..traces.plotting import COLOURS, DOTS, fixed_style
 from .axes import Axis
 from .plan import SweepPlan
 from .ranking import distance
@@ -26,7 +26,6 @@ Floats = NDArray[np.float64]
 
 LINES, HATCH = "#ffffff", "///"  # over the side where a claim fails
 STYLE: Any = {"font.size": 11, "axes.grid": False, "hatch.color": LINES, "hatch.linewidth": 0.7}
-DOTS = 200  # of an inch, as in all pictures
 NO_RESULT = "#d0d0d0"
 ORANGE = COLOURS[1]
 # of limits: a later one is thinner, so that both are seen where they coincide

@@ -16,6 +16,7 @@ from ..physics.belt import NO_LIMIT
 from .signals import Floats, Signals
 from .verdict import Verdict
 
+DOTS = 200  # of an inch, in all pictures
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#a8578a", "#e69f00", "#1a1a1a")  # of Okabe and Ito, and black
 DASHES = ("-", "--", "-.", ":")
 SIZE = (8.0, 4.0)  # of one picture [in]
