@@ -191,11 +191,12 @@ def _relative(path: Path) -> Path:
 
 def _names(claims: list[dict[str, Any]]) -> list[str]:
     """A name for the test of each claim: its own or its kind, with a number where there are several."""
+    from .cosim.claims.claims import name_of
     from .display.printed import safe
 
     names: list[str] = []
     for claim in claims:
-        base = safe(claim.get("name") or claim["kind"]).replace("::", ":")
+        base = safe(name_of(claim)).replace("::", ":")
         number, name = 1, base
         while name in names:
             number, name = number + 1, f"{base} ({number + 1})"

@@ -23,7 +23,7 @@ from .master.steppers import SOURCE, arrays, fields
 from .planning.pruning import prune
 from .scenes.graph import step_order
 from .scenes.instances import Instance
-from .scenes.scene import Scene
+from .scenes.scene import Scene, differing
 
 Floats = NDArray[np.float64]
 Seeds = Mapping[tuple[str, str], float]  # derivatives of start values, by instance and variable
@@ -213,11 +213,7 @@ def _dual(instance: Instance) -> _Instance:
 
 def seeds_of(scene: Scene, moved: Scene, change: float) -> dict[tuple[str, str], float]:
     """Return the derivatives of all start values, from a scene that was read with another value."""
-    seeds = {}
-    for name, each in scene.instances.items():
-        other = moved.instances[name]
-        for variable in {*each.values, *other.values}:
-            before, after = each.start(variable), other.start(variable)
-            if before != after:
-                seeds[name, variable] = (float(after or 0.0) - float(before or 0.0)) / change
-    return seeds
+    return {
+        (name, variable): (float(after) - float(before)) / change
+        for name, variable, before, after in differing(scene, moved)
+    }

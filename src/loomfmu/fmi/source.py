@@ -5,6 +5,7 @@ one after the other, with an `__init__` that lists the declared fields. The modu
 """
 
 import dis
+import hashlib
 import inspect
 import math
 import textwrap
@@ -35,6 +36,11 @@ def flatten(component: type[Component]) -> str:
     if component not in _flattened:
         _flattened[component] = _text(component)
     return _flattened[component]
+
+
+def digest(component: type[Component]) -> str:
+    """Return the SHA-256 of the module, hence of the component's equations. Raises as `flatten`."""
+    return hashlib.sha256(flatten(component).encode()).hexdigest()
 
 
 @dataclass

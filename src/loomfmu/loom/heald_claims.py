@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 
 from ..cosim.claims.arguments import Angles, Name, Quantity, angles_text, argument
 from ..cosim.claims.claim import ANGLE, AT_MOST, LANDINGS, PERCENT, Claim
-from ..cosim.claims.conditions import Always, Condition, Linear, Spans
+from ..cosim.claims.conditions import Always, Condition, Spans, Sum
 from ..cosim.claims.judging import Question, needs_shaft
 from ..cosim.claims.movers import Wired
 from ..errors import LoomfmuError
@@ -24,11 +24,11 @@ class _Lifted(Claim, kind=False):
     heald: str = argument(Name())
     lifted_by: str = argument(Name(), "")
 
-    def ends(self, run: Wired, tolerance: float) -> tuple[Linear, Linear]:
+    def ends(self, run: Wired, tolerance: float) -> tuple[Sum, Sum]:
         """Return what is not negative within a share of the stroke from the lower and from the upper end."""
         lift, stroke = lift_of(self.heald, self.lifted_by, run), f"{self.heald}.stroke"
-        lower = Linear(((tolerance, stroke), (-1.0, lift)))
-        return lower, Linear(((1.0, lift), (tolerance - 1.0, stroke)))
+        lower = Sum(((tolerance, stroke), (-1.0, lift)))
+        return lower, Sum(((1.0, lift), (tolerance - 1.0, stroke)))
 
     def signals(self, scene: Wired) -> list[str]:
         check_lifted_by(self.lifted_by, dampers_of(scene))
@@ -91,7 +91,7 @@ class ClearShed(_Span):
 
     def conditions(self, run: Wired) -> tuple[Condition, ...]:
         height = height_of(self.heald, self.lifted_by, run)
-        return tuple(Spans(Linear(((side, height),), -self.clearance), self.at_least) for side in (1.0, -1.0))
+        return tuple(Spans(Sum(((side, height),), -self.clearance), self.at_least) for side in (1.0, -1.0))
 
 
 class DwellContains(_Lifted):

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from ..cosim.claims.arguments import Edges, Flag, Name, Names, Quantity, Window, argument
 from ..cosim.claims.claim import AT_LEAST, AT_MOST, LANDINGS, LENGTH, ONE, SPEED, VELOCITY, Claim
-from ..cosim.claims.conditions import Always, Condition, Linear
+from ..cosim.claims.conditions import Always, Condition, Sum
 from ..cosim.claims.judging import Form, Question, needs_shaft
 from ..cosim.claims.movers import Wired
 from ..errors import LoomfmuError
@@ -23,9 +23,9 @@ class _InShed(Claim, kind=False):
     unit = LENGTH
 
     @property
-    def outside(self) -> Linear:
+    def outside(self) -> Sum:
         """Return what is not negative while the head is not in the shed."""
-        return Linear(((1.0, f"{self.belt}.idle_travel"), (-1.0, f"{self.weft}.travel")))
+        return Sum(((1.0, f"{self.belt}.idle_travel"), (-1.0, f"{self.weft}.travel")))
 
 
 class RapierInOpenShed(_InShed):
@@ -67,7 +67,7 @@ class RapierInOpenShed(_InShed):
         heights = [height_of(frame, self.lifted_by, run) for frame in self.healds or frames_of(run)]
         room = 0.5 * self.head_height
         return tuple(
-            Always((self.outside, Linear(((1.0, height),), -room), Linear(((-1.0, height),), -room)))
+            Always((self.outside, Sum(((1.0, height),), -room), Sum(((-1.0, height),), -room)))
             for height in heights
         )
 
@@ -88,7 +88,7 @@ class ReedClearOfRapier(_InShed):
 
     def conditions(self, run: Wired) -> tuple[Condition, ...]:
         distance = ((1.0, f"{self.reed}.front_limit"), (-1.0, f"{self.reed}.position"))
-        return (Always((self.outside, Linear(distance, -self.clearance))),)
+        return (Always((self.outside, Sum(distance, -self.clearance))),)
 
 
 class _Transfer(Claim, kind=False):
@@ -141,8 +141,8 @@ class TransferSpeed(_Transfer):
 
     def conditions(self, run: Wired) -> tuple[Condition, ...]:
         overlap, speed = f"{self.transfer}.overlap", f"{self.transfer}.closing_velocity"
-        apart = Linear(((1.0, f"{self.transfer}.needed_overlap"), (-1.0, overlap)))
-        return tuple(Always((apart, Linear(((side, speed),), self.at_most))) for side in (1.0, -1.0))
+        apart = Sum(((1.0, f"{self.transfer}.needed_overlap"), (-1.0, overlap)))
+        return tuple(Always((apart, Sum(((side, speed),), self.at_most))) for side in (1.0, -1.0))
 
 
 class NipHolds(Claim):
@@ -201,4 +201,4 @@ class LocksInTime(Claim):
         if not (velocity := self._velocity(run)):
             return super().conditions(run)
         limit = f"{self.lock}.speed_limit"
-        return tuple(Always((Linear(((1.0, limit), (side, velocity))),)) for side in (1.0, -1.0))
+        return tuple(Always((Sum(((1.0, limit), (side, velocity))),)) for side in (1.0, -1.0))

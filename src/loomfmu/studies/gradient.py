@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import units
+from ..cosim.claims.claims import name_of
 from ..cosim.claims.measures import signal_in
 from ..cosim.prepared import Prepared
 from ..cosim.reading import requested
@@ -97,7 +98,7 @@ def gradient(
         ):
             raise LoomfmuError(f"{name} = {shown(given)} is not a list of names")
     base = requested(scene, set, "native").scene
-    claims = {str(each.get("name") or each["kind"]): number for number, each in enumerate(base.claims)}
+    claims = {name_of(each): number for number, each in enumerate(base.claims)}
     measures = [each for each in of if each not in claims]
     for each in measures:
         signal = signal_in(each)

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 import loomfmu
-from loomfmu.cosim.claims.conditions import FALLS, IN, OUT, RISES, UNKNOWN, Linear, Spans
+from loomfmu.cosim.claims.conditions import FALLS, IN, OUT, RISES, UNKNOWN, Spans, Sum
 from loomfmu.cosim.scenes.scene import Scene, parse
 from loomfmu.errors import LoomfmuError
 from loomfmu.studies.proving.prove import Proofs, prove
@@ -123,7 +123,7 @@ KINDS = {"r": RISES, "i": IN, "f": FALLS, "o": OUT, "u": UNKNOWN}
 def test_spans_are_proven_only_where_they_are_known(kinds: str, proven: bool) -> None:
     edges = np.arange(len(kinds) + 1.0)
     cells = np.array([KINDS[each] for each in kinds])
-    assert bool(Spans(Linear(()), 1.5).doubtful(cells, edges).any()) != proven
+    assert bool(Spans(Sum(()), 1.5).doubtful(cells, edges).any()) != proven
 
 
 def test_a_start_up_that_varies_is_proven_over_time(loom: Scene) -> None:

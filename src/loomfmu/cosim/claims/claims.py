@@ -132,6 +132,11 @@ def place_of(table: Mapping[str, Any]) -> str:
     return f"claim {shown(table.get('name') or table.get('kind'))}"
 
 
+def name_of(table: Mapping[str, Any]) -> str:
+    """Return the name of a claim of a scene: its own, or its kind."""
+    return str(table.get("name") or table["kind"])
+
+
 def called(table: Mapping[str, Any], verdict: Verdict) -> str:
     """Return the name of a verdict's claim in tables: its own name, or its kind and signal."""
     return str(table.get("name") or f"{verdict.claim} ({verdict.signal})")

@@ -4,7 +4,7 @@ A run shows a claim at its samples and between them; a condition says what must 
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import ClassVar
@@ -26,7 +26,7 @@ class Unprovable(LoomfmuError):
 
 
 @dataclass(frozen=True)
-class Linear:
+class Sum:
     """A sum of shares of signals and parameters, and a constant: what must not be negative, in SI."""
 
     terms: tuple[tuple[float, str], ...]
@@ -37,12 +37,12 @@ class Linear:
 class Always:
     """At all angles, or those of a window, or at some of every revolution, one of these is not negative."""
 
-    any_of: tuple[Linear, ...]
+    any_of: tuple[Sum, ...]
     window: Window | None = None
     angles: tuple[float, ...] = ()
 
     @property
-    def forms(self) -> tuple[Linear, ...]:
+    def forms(self) -> tuple[Sum, ...]:
         """Return all that it is about."""
         return self.any_of
 
@@ -71,20 +71,28 @@ OUT, RISES, FALLS, IN, UNKNOWN = range(5)  # what a form does in a cell of angle
 class Spans:
     """Whenever this stops being negative, it stays so for an angle [rad], unless the run ends before."""
 
-    inside: Linear
+    inside: Sum
     at_least: float
 
     widest: ClassVar[float] = 0.05  # a cell of angles, at first [rad]
     finest: ClassVar[float] = 2.0**-12  # the closest that an end of a span is looked for [rad]
 
     @property
-    def forms(self) -> tuple[Linear, ...]:
+    def forms(self) -> tuple[Sum, ...]:
         """Return all that it is about."""
         return (self.inside,)
 
-    def cells(self, first: float, last: float) -> Floats:
-        """Return the edges of cells of angles to begin with."""
-        return np.linspace(first, last, max(2, math.ceil((last - first) / self.widest)) + 1)
+    def hold(self, first: float, last: float, kinds_of: Callable[[Floats], NDArray[np.int_]]) -> bool:
+        """Return whether all spans between two angles last long enough.
+
+        `kinds_of` says what `inside` does between edges. Cells are bisected where spans begin and end.
+        """
+        edges = np.linspace(first, last, max(2, math.ceil((last - first) / self.widest)) + 1)
+        while (doubtful := self.doubtful(kinds_of(edges), edges)).any():
+            if (np.diff(edges)[doubtful] < self.finest).any():
+                return False
+            edges = np.sort(np.concatenate([edges, 0.5 * (edges[:-1] + edges[1:])[doubtful]]))
+        return True
 
     def doubtful(self, kinds: NDArray[np.int_], edges: Floats) -> NDArray[np.bool_]:
         """Return the cells to bisect: those of each stretch that may be a span which is too short.
@@ -113,8 +121,8 @@ Condition = Always | Spans
 def above(signal: str, bound: float | str, share: float = 1.0, window: Window | None = None) -> Always:
     """Return the condition that a share of a signal is at least as large as this share of a bound."""
     if isinstance(bound, str):
-        return Always((Linear(((share, signal), (-share, bound))),), window)
-    return Always((Linear(((share, signal),), -share * bound),), window)
+        return Always((Sum(((share, signal), (-share, bound))),), window)
+    return Always((Sum(((share, signal),), -share * bound),), window)
 
 
 def present(signal: str, run: Wired, sense: int) -> str:

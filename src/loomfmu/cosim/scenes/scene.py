@@ -3,13 +3,14 @@
 import contextlib
 import fnmatch
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from ... import files
 from ...errors import LoomfmuError
+from ..importing.fmus import Value
 from ..importing.process import AVAILABLE
 from . import notes
 from .graph import Drive, Wire, usual_coupling
@@ -238,6 +239,16 @@ def _ask_for_locals(patterns: Any, instances: Mapping[str, Instance]) -> None:
             found = [variable] if variable in inner else fnmatch.filter(inner, variable)
             if variable in found or not fnmatch.filter(each.fmu.outputs, variable):
                 each.fmu = each.fmu.with_outputs(found)
+
+
+def differing(one: Scene, other: Scene) -> Iterator[tuple[str, str, Value, Value]]:
+    """Yield what start values differ between two scenes of one wiring: instance, variable, both values."""
+    for name, each in one.instances.items():
+        moved = other.instances[name]
+        for variable in {*each.values, *moved.values}:
+            before, after = each.start(variable), moved.start(variable)
+            if before != after:
+                yield name, variable, before or 0.0, after or 0.0
 
 
 def _speed(instances: Mapping[str, Instance]) -> float | None:

@@ -1,6 +1,5 @@
 """Certificates: what others need to confirm a proof, without the prover and without trust in it."""
 
-import hashlib
 import json
 from collections.abc import Sequence
 from pathlib import Path
@@ -9,9 +8,9 @@ from typing import Any
 from ...errors import LoomfmuError
 from ...files import starts_with, write_file
 from ...fmi import source
+from . import FORMAT
 from .prove import Proofs
 
-FORMAT = "loomfmu proof 1"
 CERTIFICATE = starts_with("a certificate of a proof", b'{"format": "loomfmu proof', suffix=".json")
 
 
@@ -33,7 +32,7 @@ def write(proofs: Proofs, path: Path, inputs: Sequence[Path] = (), overwrite: bo
         "overrides": scene.overrides,
         "over": {span.key: [span.low.hex(), span.high.hex()] for span in proofs.over},
         "equations": {
-            component.__name__: hashlib.sha256(source.flatten(component).encode()).hexdigest()
+            component.__name__: source.digest(component)
             for proof in certified
             for component in proof.components
         },

@@ -90,10 +90,9 @@ class Table:
     def over(self, number: Number) -> Number:
         """Return the values of the table at a number."""
         reached = (self._edges[:-1] <= number.values[:, 1:]) & (self._edges[1:] >= number.values[:, :1])
-        low = np.where(reached, self._rises, np.inf).min(axis=1) * (1.0 - 8.0 * ULP)
-        high = np.where(reached, self._rises, -np.inf).max(axis=1) * (1.0 + 8.0 * ULP)
-        rises = np.stack([np.minimum(low, high), np.maximum(low, high)], axis=-1)
-        rises += np.abs(rises) * np.array([-16.0, 16.0]) * ULP
+        low = np.where(reached, self._rises, np.inf).min(axis=1)
+        high = np.where(reached, self._rises, -np.inf).max(axis=1)
+        rises = np.stack([low - 16.0 * ULP * np.abs(low), high + 16.0 * ULP * np.abs(high)], axis=-1)
         return Number(self._at(number.values), times(number.slopes, rises[:, None]), self._at(number.middle))
 
     def _at(self, spans: Floats) -> Floats:

@@ -1,13 +1,12 @@
 """Confirms a certificate of `prove`, without the prover: the components' own Python, run on intervals."""
 
 import ast
-import hashlib
 import json
 import math
 import re
 import tempfile
 from collections.abc import Iterator, Sequence
-from functools import partial
+from functools import cache, partial
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -16,13 +15,14 @@ import numpy as np
 
 from ...components import COMPONENTS
 from ...components.shaft_driven import FOLLOWING, ShaftDriven
-from ...cosim.claims.conditions import FALLS, IN, OUT, RISES, UNKNOWN, Condition, Linear, Spans, names_of
+from ...cosim.claims.claims import name_of
+from ...cosim.claims.conditions import FALLS, IN, OUT, RISES, UNKNOWN, Condition, Spans, Sum, names_of
 from ...cosim.planning.pruning import prune
 from ...cosim.reading import requested
 from ...cosim.scenes import scene as scenes
 from ...cosim.scenes.graph import step_order
 from ...cosim.scenes.instances import Instance
-from ...cosim.scenes.scene import Scene
+from ...cosim.scenes.scene import Scene, differing
 from ...cosim.scenes.settings import texts_in, toml
 from ...declaring.variables import MOTION, variables_of
 from ...errors import LoomfmuError, shown
@@ -31,9 +31,9 @@ from ...fmi import source
 from ...fmi.native.slicing import settings_of, sliced
 from ...fmi.native.translate import ENTRIES
 from ...sweeps.varied import varied
+from . import FORMAT
 from .intervals import ALL, MATH, Ends, Interval, Unknown, floor, joined, number
 
-FORMAT = "loomfmu proof 1"
 SHAFT, START = "shaft", "start_angle"
 FINER = 6  # bisections of a box that this arithmetic, which is wider, may need on top
 Box = tuple[Ends, ...]
@@ -87,13 +87,14 @@ class _Check:
             for end in ends:
                 setting = {key: about.setting(about.read(about.setting(end)))}
                 moved = requested(scene, {**scene.overrides, **setting}, "native").scene
-                if follower := _follower(scene, moved, targets):
-                    raise Refused(f"{follower} changes with {key}")
+                for name, variable, _before, _after in differing(scene, moved):
+                    if (name, variable) not in targets:
+                        raise Refused(f"{name}.{variable} changes with {key}")
             self._sides |= targets
         self._equations = told["equations"]
         ranges = zip(told["over"], self._ends, strict=True)
         within = "".join(f", {key} from {low:.9g} to {high:.9g} (SI)" for key, (low, high) in ranges)
-        names = [str(table.get("name") or table["kind"]) for table in scene.claims]
+        names = [name_of(table) for table in scene.claims]
         self.lines: list[str] = []
         if not told["claims"] or any(names.count(claim["name"]) != 1 for claim in told["claims"]):
             raise Refused("it proves no claim that the scene has under one name")
@@ -147,17 +148,6 @@ def _check_harmless(told: dict[str, Any]) -> None:
             raise Refused(f"{shown(name)} is not the name of a file beside the scene")
 
 
-def _follower(scene: Scene, moved: Scene, targets: Any) -> str:
-    """Return a variable, other than these, that differs between two scenes; "" if none does."""
-    for name, each in moved.instances.items():
-        for variable in {*each.values, *scene.instances[name].values}:
-            if (name, variable) not in targets and each.start(variable) != scene.instances[name].start(
-                variable
-            ):
-                return f"{name}.{variable}"
-    return ""
-
-
 def _leaves(box: Box, tree: Iterator[int]) -> Iterator[Box]:
     """Yield the boxes of a tree, which are together this one. Raises Refused if it is not whole."""
     stack = [box]
@@ -180,7 +170,7 @@ def _text(box: Box) -> str:
     return ", ".join(f"{low:.6g} to {high:.6g}" for low, high in box)
 
 
-def _holds(chain: "_Mechanisms", forms: Sequence[Linear], box: Box, finer: int) -> bool:
+def _holds(chain: "_Mechanisms", forms: Sequence[Sum], box: Box, finer: int) -> bool:
     """Return whether one of the forms is not negative all over a box, or over each half of it."""
     try:
         found, middle = chain.numbers(box)
@@ -199,22 +189,15 @@ def _holds(chain: "_Mechanisms", forms: Sequence[Linear], box: Box, finer: int) 
 
 def _spans_last(chain: "_Mechanisms", condition: Spans, run: Ends, box: Box) -> bool:
     """Return whether all spans within a run last long enough, all over a box of parameters."""
-    known: dict[Ends, int] = {}
-    edges = condition.cells(*run)
-    while True:
-        cells = [(float(low), float(high)) for low, high in pairwise(edges)]
-        for cell in cells:
-            if cell not in known:
-                known[cell] = _kind(chain, condition.inside, (cell, *box))
-        doubtful = condition.doubtful(np.array([known[cell] for cell in cells]), edges)
-        if not doubtful.any():
-            return True
-        if (np.diff(edges)[doubtful] < condition.finest).any():
-            return False
-        edges = np.sort(np.concatenate([edges, 0.5 * (edges[:-1] + edges[1:])[doubtful]]))
+
+    @cache
+    def kind(cell: Ends) -> int:
+        return _kind(chain, condition.inside, (cell, *box))
+
+    return condition.hold(*run, lambda edges: np.array([kind(cell) for cell in pairwise(edges.tolist())]))
 
 
-def _kind(chain: "_Mechanisms", form: Linear, box: Box) -> int:
+def _kind(chain: "_Mechanisms", form: Sum, box: Box) -> int:
     """Say what a form does while the angle, the first side of a box, rises."""
     try:
         found, middle = chain.numbers(box)
@@ -267,7 +250,7 @@ class _Mechanisms:
                 raise Refused(f"{name} depends on more than the shaft angle")
             if issubclass(component, ShaftDriven) and not instance.start(FOLLOWING):
                 raise Refused(f"{name} does not follow the shaft")
-            if equations.get(component.__name__) != digest(component):
+            if equations.get(component.__name__) != source.digest(component):
                 raise Refused(f"the equations of {component.__name__} are not those of the proof")
             wanted = [
                 v.name for v in variables_of(component) if (name, v.name) in read and v.causality == "output"
@@ -303,7 +286,7 @@ class _Mechanisms:
                 found[f"{name}.{variable}"] = _narrowed(a, b, box)
         return found, middle
 
-    def value(self, form: Linear, found: Numbers) -> Interval:
+    def value(self, form: Sum, found: Numbers) -> Interval:
         """Return a sum of signals and parameters."""
         total = number(form.constant)
         for share, name in form.terms:
@@ -330,11 +313,6 @@ def _started(
     if made.initialize(time) not in warnings:
         raise Unknown
     return tuple(number(getattr(made, variable)) for variable in wanted)
-
-
-def digest(component: Any) -> str:
-    """Return the SHA-256 of a component's equations."""
-    return hashlib.sha256(source.flatten(component).encode()).hexdigest()
 
 
 class _Numbers(ast.NodeTransformer):

@@ -64,7 +64,7 @@ def cover(whole: Floats, decide: Callable[[Floats], Decision], most: int, least:
         if found.boxes + len(waiting) + 2 * split.sum() > most:
             split[:] = False
         found.open += list(now[~decision.proven & ~split])
-        across = weights.argmax(axis=1)
+        across = weights.argmax(axis=1) if len(whole) else np.zeros(len(now), dtype=int)
         for place in np.flatnonzero(split):
             sides[ids[place]] = int(across[place])
             halves[ids[place]] = (len(sides), len(sides) + 1)

@@ -18,9 +18,10 @@ from ...fmi.native.translate import translate_slice
 from .spans import Floats
 
 NATIVE = Path(__file__).parent / "native"
-LARGEST_BOX = 8  # sides of a box, as in the header
+LARGEST_BOX = 8  # sides of a box, the shaft angle included
 
-PROGRAM = """#include "enclosure.h"
+PROGRAM = """#define LARGEST_BOX {largest}
+#include "enclosure.h"
 #define double enclosure
 {struct}
 
@@ -81,6 +82,7 @@ def program(component: type[Component], wanted: Sequence[str], settings: Mapping
         if variable.name in wanted:
             gets.append(f"    case {place}: return enclosure({member});")
     return PROGRAM.format(
+        largest=LARGEST_BOX,
         name=name,
         struct=written.struct,
         functions=_with_ways(_exact(written.functions), name, written.changes),

@@ -1,7 +1,7 @@
 """`prove`: claims for all shaft angles of a run and all values of a box, proven, refuted or left open."""
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from itertools import cycle, product
@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import units
+from ...cosim.claims.claims import name_of
 from ...cosim.claims.conditions import (
     FALLS,
     IN,
@@ -20,8 +21,8 @@ from ...cosim.claims.conditions import (
     UNKNOWN,
     Always,
     Condition,
-    Linear,
     Spans,
+    Sum,
     Unprovable,
     names_of,
 )
@@ -29,7 +30,7 @@ from ...cosim.planning.requested import Requested
 from ...cosim.prepared import Prepared
 from ...cosim.reading import requested
 from ...cosim.results import Evaluation
-from ...cosim.scenes.scene import Scene
+from ...cosim.scenes.scene import Scene, differing
 from ...declaring.variables import Component
 from ...errors import LoomfmuError, shown
 from ..span import Span, set_twice, span_of, warnings_of
@@ -64,7 +65,7 @@ class Proof:
         return self.status == PROVEN
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Proofs:
     """The proofs of a scene `over` a box; true if all claims are proven."""
 
@@ -76,6 +77,11 @@ class Proofs:
     def __bool__(self) -> bool:
         return bool(self.claims) and all(self.claims)
 
+    def __repr__(self) -> str:
+        proven = f"{sum(map(bool, self.claims))} of {len(self.claims)} claims proven"
+        others = "".join(f"\n  {each.status}: {each.claim}" for each in self.claims if not each)
+        return f"<Proofs of {self.scene.name}: {proven}{others}>"
+
 
 def prove(
     scene: str | Path | Scene,
@@ -84,7 +90,6 @@ def prove(
     set: dict[str, Any] | None = None,  # the command's own word
     claims: Sequence[str] | None = None,
     boxes: int = MOST,
-    progress: bool = False,
 ) -> Proofs:
     """Prove claims of a scene for all shaft angles of its revolutions, and all values of a box.
 
@@ -111,7 +116,7 @@ def prove(
         raise LoomfmuError(f"{twice[0].key} and {twice[1].key} both set {twice[2]}")
     for side in sides:
         _check_follows(asked.scene, side)
-    names = [str(table.get("name") or table["kind"]) for table in asked.scene.claims]
+    names = [name_of(table) for table in asked.scene.claims]
     for name in claims or ():
         if name not in names:
             raise LoomfmuError(f"the scene has no claim {shown(name)}; it has {', '.join(names)}")
@@ -130,13 +135,9 @@ def _check_follows(scene: Scene, span: Span) -> None:
         raise LoomfmuError(f"{span.key} cannot vary in a proof: it is not the value of a parameter")
     for value in (span.low, span.high):
         moved = requested(scene, {**scene.overrides, **span.setting(value)}, "native").scene
-        for name, each in moved.instances.items():
-            for variable in {*each.values, *scene.instances[name].values}:
-                changes = each.start(variable) != scene.instances[name].start(variable)
-                if changes and f"{name}.{variable}" not in span.varied.targets:
-                    raise LoomfmuError(
-                        f"{span.key} cannot vary in a proof: {name}.{variable} changes with it"
-                    )
+        for name, variable, _before, _after in differing(scene, moved):
+            if f"{name}.{variable}" not in span.varied.targets:
+                raise LoomfmuError(f"{span.key} cannot vary in a proof: {name}.{variable} changes with it")
 
 
 class _Search:
@@ -214,7 +215,7 @@ class _Search:
         first, last = self._run_of(chain)
         if isinstance(condition, Spans):
             decide = partial(decide_spans, chain, condition, (first, last))
-            return (cover(self._box, decide, self._most // 64),) if len(self._box) else (_alone(decide),)
+            return (cover(self._box, decide, self._most // 64),)
         ranges = [(first, last)] if chain.timed else condition.ranges(first, last)
         return tuple(
             cover(np.concatenate([[angles], self._box]), partial(decide_always, chain, condition), self._most)
@@ -252,7 +253,7 @@ class _Search:
         return None
 
 
-def value_of(form: Linear, chain: Chain, numbers: Mapping[str, Number], boxes: Floats) -> Number:
+def value_of(form: Sum, chain: Chain, numbers: Mapping[str, Number], boxes: Floats) -> Number:
     """Return a sum of signals and parameters over boxes."""
     total = Number.of(form.constant, boxes)
     for share, name in form.terms:
@@ -284,33 +285,12 @@ def _weights(slopes: Floats, boxes: Floats) -> Floats:
 
 def decide_spans(chain: Chain, condition: Spans, run: tuple[float, float], boxes: Floats) -> Decision:
     """Return the boxes in which every span that the run shows whole is long enough."""
-    proven = [spans_last(chain, condition, run, box) for box in boxes]
+    proven = [condition.hold(*run, partial(_kinds, chain, condition.inside, box)) for box in boxes]
     widths = boxes[..., 1] - boxes[..., 0]
     return Decision(np.array(proven, dtype=bool), widths / np.maximum(widths.max(axis=0), 1e-300))
 
 
-def _alone(decide: Callable[[Floats], Decision]) -> Cover:
-    """A cover of no sides."""
-    proven = bool(decide(np.zeros((1, 0, 2))).proven[0])
-    return Cover(np.zeros((0, 2)), [-1], [] if proven else [np.zeros((0, 2))], 1, float(proven))
-
-
-def spans_last(chain: Chain, condition: Spans, run: tuple[float, float], box: Floats) -> bool:
-    """Return whether all spans of one box last long enough: angles are bisected where they begin and end."""
-    edges = condition.cells(*run)
-    while True:
-        kinds = _kinds(chain, condition.inside, edges, box)
-        doubtful = condition.doubtful(kinds, edges)
-        if not doubtful.any():
-            return True
-        narrow = np.diff(edges) < condition.finest
-        if (doubtful & narrow).any():
-            return False
-        middle = 0.5 * (edges[:-1] + edges[1:])[doubtful]
-        edges = np.sort(np.concatenate([edges, middle]))
-
-
-def _kinds(chain: Chain, form: Linear, edges: Floats, box: Floats) -> NDArray[np.int_]:
+def _kinds(chain: Chain, form: Sum, box: Floats, edges: Floats) -> NDArray[np.int_]:
     """Say of each cell of angles how a form moves in it, all over a box of parameters."""
     boxes = np.empty((len(edges) - 1, 1 + len(box), 2))
     boxes[:, 0, 0], boxes[:, 0, 1] = edges[:-1], edges[1:]

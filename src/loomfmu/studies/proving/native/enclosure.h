@@ -7,6 +7,8 @@
  * A comparison that the box leaves undecided is decided both ways, one after the other: `joined` calls a
  * function again and again until all its ways are done, and joins what they return. In each way, the number
  * compared is narrowed to what the way means. A value that depends on the way has no slopes, since it may jump.
+ *
+ * LARGEST_BOX is defined before: the most sides of a box, the shaft angle included.
  */
 #ifndef ENCLOSURE_H
 #define ENCLOSURE_H
@@ -14,7 +16,6 @@
 #include "../../../fmi/native/shell/python_arithmetic.h"
 #include <setjmp.h>
 
-#define LARGEST_BOX 8 /* parameters of a box, the shaft angle included */
 #define MOST_WAYS 64 /* of a function */
 #define MOST_DECISIONS 12 /* in one way */
 #define LIBRARY_ERROR 4.0 /* largest error of a function of libm, in units of the last place; tested */
