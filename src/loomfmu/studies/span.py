@@ -69,23 +69,23 @@ class Span(Keyed):
         return f"{self.number(self.low)} to {self.show(self.high)}"
 
 
-def span_of(scene: Scene, text: str, from_: Any = None, to: Any = None) -> Span:
-    """Return the variable that `--vary` names, over the given range, `from_` to `to`, or a usual one.
+def span_of(scene: Scene, text: str, from_: Any = None, to: Any = None, option: str = "vary") -> Span:
+    """Return the variable that `option` names, over the given range, `from_` to `to`, or a usual one.
 
     Raises LoomfmuError for what cannot be varied, or not over that range.
     """
     if not isinstance(text, str):
-        raise LoomfmuError(f"vary = {shown(text)} is not a variable such as 'shaft.speed'")
+        raise LoomfmuError(f"{option} = {shown(text)} is not a variable such as 'shaft.speed'")
     key, equals, wanted = (part.strip() for part in text.partition("="))
     if equals:
         try:
             first, last = units.ends_of(wanted)
         except units.UnitError as error:
-            raise LoomfmuError(f"vary {key}: {error}") from None
+            raise LoomfmuError(f"{option} {key}: {error}") from None
         if not (first and last):
-            raise LoomfmuError(f"vary {text}: {shown(wanted)} is not a range; {FORM}")
+            raise LoomfmuError(f"{option} {text}: {shown(wanted)} is not a range; {FORM}")
         if from_ is not None or to is not None:
-            raise LoomfmuError(f"vary {text}: the range is given twice; leave out from and to")
+            raise LoomfmuError(f"{option} {text}: the range is given twice; leave out from and to")
         from_, to = first, last
     variable = varied(scene, key)
     port, value = _port(scene, variable)

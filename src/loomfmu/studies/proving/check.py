@@ -66,8 +66,8 @@ def check(path: str | Path) -> list[str]:
         AttributeError,
         RecursionError,
         OverflowError,
-    ) as error:
-        raise LoomfmuError(f"{path} is no certificate of a proof: {type(error).__name__} {error}") from None
+    ):
+        raise LoomfmuError(f"{path} is no certificate that `loomfmu prove --certificate` wrote") from None
 
 
 class _Check:

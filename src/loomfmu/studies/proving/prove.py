@@ -106,7 +106,12 @@ def prove(
         LoomfmuError: bad input, or a claim that is not there
     """
     asked = requested(scene, set, "native")
-    sides = [span_of(asked.scene, text) for text in over]
+    texts = [over] if isinstance(over, str) else list(over)
+    for text in texts:
+        if isinstance(text, str) and "=" not in text:
+            form = "write INSTANCE.VARIABLE=LOW..HIGH, such as shaft.speed=300rpm..640rpm"
+            raise LoomfmuError(f"over {text}: a proof needs a range; {form}")
+    sides = [span_of(asked.scene, text, option="over") for text in texts]
     if len(sides) >= LARGEST_BOX:
         raise LoomfmuError(f"over has {len(sides)} parameters; at most {LARGEST_BOX - 1} vary together")
     for side in sides:
