@@ -33,9 +33,9 @@ if TYPE_CHECKING:
     from .studies.limits.results import Limits as Limits
     from .studies.optimizing.optimize import optimize as optimize
     from .studies.optimizing.optimum import Optimum as Optimum
-    from .studies.proving.prove import Proofs as Proofs
+    from .studies.proving.proofs import Proofs as Proofs
     from .studies.proving.prove import prove as prove
-    from .studies.tolerances.tolerances import Tolerances as Tolerances
+    from .studies.tolerances.results import Tolerances as Tolerances
     from .studies.tolerances.tolerances import tolerances as tolerances
     from .sweeps.run import Sweep as Sweep
     from .sweeps.run import sweep as sweep
@@ -55,10 +55,10 @@ _HOMES = {
     "LoomfmuError": "errors",
     "Optimum": "studies.optimizing.optimum",
     "Prepared": "cosim.prepared",
-    "Proofs": "studies.proving.prove",
+    "Proofs": "studies.proving.proofs",
     "Result": "cosim.results",
     "Sweep": "sweeps.run",
-    "Tolerances": "studies.tolerances.tolerances",
+    "Tolerances": "studies.tolerances.results",
     "Trace": "traces",
     "Verdict": "traces",
     "compare": "traces",

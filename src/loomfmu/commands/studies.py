@@ -9,7 +9,7 @@ from ..display.printed import say, warn
 from ..errors import LoomfmuError
 from ..extras import need
 from ..files import check_target
-from .shared import SCENE, SET, argument, command, ending, force, pairs, place, vary
+from .shared import SCENE, SET, argument, command, ending, flag, force, pairs, place, vary
 
 
 @command(argument("sweep", "SWEEP.toml", type=ending(".toml")), *place("SWEEP"))
@@ -45,6 +45,7 @@ def _places(options: argparse.Namespace) -> dict[str, Any]:
     ),
     argument("--points", "N", "values of the first that are tried first (41)", type=int),
     argument("--rows", "N", "values of the second that are taken (11)", type=int),
+    flag("--prove", "also prove each range for all shaft angles, up to its limits"),
     SET,
     argument("--output", "FILE.csv|svg|png|pdf", "also write the limits as a table or a picture"),
     force("the file even if it is not such a table or picture"),
@@ -66,6 +67,7 @@ def limit(options: argparse.Namespace) -> int:
         from_=options.from_,
         to=options.to,
         set=pairs(options.overrides),
+        prove=options.prove,
         progress=True,
         **{name: count for name, count in counts.items() if count is not None},
     )
@@ -97,6 +99,7 @@ def _reported(
         "a tolerance, such as belt.guide_clearance=0.2mm..0.5mm (repeatable); those of the scene's"
         " [tolerances] by default"
     ),
+    flag("--prove", "also prove the worst cases, for all shaft angles and all values within the tolerances"),
     SET,
     argument("--picture", "FILE.svg|png|pdf", "also draw the worst cases"),
     force("the picture even if loomfmu did not draw it"),
@@ -114,7 +117,13 @@ def tolerances(options: argparse.Namespace) -> int:
     picture = Path(options.picture) if options.picture else None
     if picture is not None:  # before the runs, not after them
         pictures.check(picture, inputs, options.force)
-    found = find(options.scene, vary=options.vary, set=pairs(options.overrides), progress=True)
+    found = find(
+        options.scene,
+        vary=options.vary,
+        set=pairs(options.overrides),
+        prove=options.prove,
+        progress=True,
+    )
     drawn = {picture: lambda path: pictures.save(draw(found), path, found.title, inputs, options.force)}
     return _reported(found, show, drawn)
 
@@ -152,8 +161,8 @@ def prove(options: argparse.Namespace) -> int:
         return 0
     from ..studies.proving import certificate
     from ..studies.proving.proofs_shown import show
-    from ..studies.proving.prove import MOST
     from ..studies.proving.prove import prove as find
+    from ..studies.proving.search import MOST
 
     inputs, output = [Path(options.scene)], Path(options.certificate) if options.certificate else None
     if output is not None:

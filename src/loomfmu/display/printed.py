@@ -8,6 +8,7 @@ import textwrap
 import traceback
 import unicodedata
 from collections.abc import Iterable, Sequence
+from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal, localcontext
 from typing import TextIO
 
 from ..errors import LoomfmuError
@@ -91,6 +92,16 @@ def show(
             line for entry in entries for line in as_entry([safe(part) for part in entry], width, stacked)
         ]
     say(*([] if further else [""]), *lines, "")
+
+
+def rounded(value: float, up: bool) -> str:
+    """Return a number with ten digits, rounded up or down.
+
+    >>> rounded(2 / 3, up=True), rounded(2 / 3, up=False)
+    ('0.6666666667', '0.6666666666')
+    """
+    with localcontext(prec=10, rounding=ROUND_CEILING if up else ROUND_FLOOR):
+        return f"{+Decimal(value):f}"
 
 
 def as_csv(rows: Iterable[Sequence[object]]) -> str:

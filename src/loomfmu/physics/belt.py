@@ -65,19 +65,19 @@ def length_factor(clearance: float) -> float:
     >>> length_factor(0.3e-3), length_factor(2e-3)
     (0.8, 1.0)
     """
-    if clearance >= 0.80e-3:
-        return 1.0
-    index = 0
-    for knot in range(1, 4):
-        if clearance >= CLEARANCES[knot]:
-            index = knot
-    width = CLEARANCES[index + 1] - CLEARANCES[index]
-    t = (clearance - CLEARANCES[index]) / width
-    return (
-        FACTORS[index]
-        + (FACTORS[index + 1] - FACTORS[index]) * t * t * (3.0 - 2.0 * t)
-        + width * t * (1.0 - t) * ((1.0 - t) * _knot_slope(index) - t * _knot_slope(index + 1))
-    )
+    factor = FACTORS[0]
+    for index in range(4):
+        width = CLEARANCES[index + 1] - CLEARANCES[index]
+        t = _within_one((clearance - CLEARANCES[index]) / width)
+        factor += (FACTORS[index + 1] - FACTORS[index]) * t * t * (3.0 - 2.0 * t) + width * t * (1.0 - t) * (
+            (1.0 - t) * _knot_slope(index) - t * _knot_slope(index + 1)
+        )
+    return factor
+
+
+def _within_one(t: float) -> float:
+    """Return a number, or 0 below 0 and 1 above 1: without a comparison, so that its slopes are known."""
+    return 0.5 * (fabs(t) - fabs(t - 1.0) + 1.0)
 
 
 def critical_force(free_length: float, factor: float, stiffness: float) -> float:

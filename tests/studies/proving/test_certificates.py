@@ -8,7 +8,8 @@ import pytest
 
 from loomfmu.errors import LoomfmuError
 from loomfmu.studies.proving import certificate
-from loomfmu.studies.proving.prove import Proofs, prove
+from loomfmu.studies.proving.proofs import Proofs
+from loomfmu.studies.proving.prove import prove
 
 pytest.importorskip("flint")
 from loomfmu.studies.proving.check import check
@@ -50,6 +51,15 @@ def _too_many(told: dict[str, Any]) -> None:
 
 def _undivided(told: dict[str, Any]) -> None:
     told["claims"][0]["conditions"][0][0] = [-1]
+
+
+def _one_end(told: dict[str, Any]) -> None:
+    """Pretend that the slowest speed, the lower end of side 1 of 2, is enough for all."""
+    told["claims"][0]["conditions"][0][0] = [2 + 2 * 1, *told["claims"][0]["conditions"][0][0]]
+
+
+def _no_end(told: dict[str, Any]) -> None:
+    told["claims"][0]["conditions"][0][0] = [2 + 2 * 2, -1]
 
 
 def _other_bound(told: dict[str, Any]) -> None:
@@ -120,6 +130,8 @@ FORGED = [
     (_missing, "a box is missing"),
     (_too_many, "more boxes"),
     (_undivided, "is not confirmed"),
+    (_one_end, "one end of a side is not enough"),
+    (_no_end, "a box is missing"),
     (_other_bound, "is not confirmed"),
     (_other_scene, "is not confirmed"),
     (_other_equations, "equations of BeltMonitor are not those"),

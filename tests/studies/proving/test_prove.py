@@ -5,7 +5,8 @@ import loomfmu
 from loomfmu.cosim.claims.conditions import FALLS, IN, OUT, RISES, UNKNOWN, Spans, Sum
 from loomfmu.cosim.scenes.scene import Scene, parse
 from loomfmu.errors import LoomfmuError
-from loomfmu.studies.proving.prove import Proofs, prove
+from loomfmu.studies.proving.proofs import Proofs
+from loomfmu.studies.proving.prove import prove
 
 
 def _status(found: Proofs) -> dict[str, str]:

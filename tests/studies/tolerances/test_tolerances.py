@@ -11,7 +11,8 @@ from loomfmu import LoomfmuError, limit, prepare, tolerances
 from loomfmu.cli import main
 from loomfmu.cosim.scenes.scene import parse
 from loomfmu.design import loom as design
-from loomfmu.studies.tolerances import tolerances as worst_cases
+from loomfmu.studies.tolerances import results
+from loomfmu.studies.tolerances import tolerances as search
 from loomfmu.studies.tolerances.worst_cases import show
 
 DEMO = Path(__file__).parents[3] / "sims" / "wl680_3600.toml"
@@ -37,7 +38,7 @@ def test_the_worst_case_is_that_of_the_closed_form() -> None:
     given_back = [closed(0.3e-3, 620.0) - worst, closed(0.5e-3, 600.0) - worst]
     assert [each.distance for each in margin.costs] == pytest.approx(given_back, abs=1e-5)
     # where each of two tolerances alone makes it as bad, none has a cost: all of them are named
-    *_rest, where, costs = worst_cases.rows(replace(found, claims=(replace(margin, costs=()),)))[0]
+    *_rest, where, costs = results.rows(replace(found, claims=(replace(margin, costs=()),)))[0]
     assert where == "shaft.speed = 620 rev/min, belt.guide_clearance = 0.5 mm"
     assert costs == "cost: none alone; it is as bad without any one of them"
     (dwell,) = (each for each in found.claims if each.claim == "the frames dwell long enough")
@@ -76,7 +77,7 @@ def test_studies_say_what_a_longer_run_would_change(capsys: pytest.CaptureFixtur
 
 
 def test_a_worst_case_inside_the_box_is_found() -> None:
-    found = worst_cases._descended(lambda p: (p[0] - 0.37) ** 2 + abs(p[1] - 0.81), (0.0, 1.0))
+    found = search._descended(lambda p: (p[0] - 0.37) ** 2 + abs(p[1] - 0.81), (0.0, 1.0))
     # steps end at 2^-16 of a range
     assert found == pytest.approx((0.37, 0.81), abs=2.0**-15)
 
@@ -148,6 +149,6 @@ def test_warnings_of_the_scene_are_those_of_a_run(capsys: pytest.CaptureFixture[
 
 def test_the_scene_may_be_its_own_worst_case() -> None:
     found = tolerances(DEMO, vary="shaft.speed=300rpm..600rpm", set=FAST)
-    where = {claim: place for _word, claim, _own, _worst, place, _cost in worst_cases.rows(found)}
+    where = {claim: place for _word, claim, _own, _worst, place, _cost in results.rows(found)}
     assert where[MARGIN] == "worst at the scene's own value"
     assert where["the frames dwell long enough"] == "the same everywhere"

@@ -24,6 +24,7 @@ from .results import (
     boundary_headings,
     boundary_rows,
     conclusion,
+    proofs,
     rows,
     unsettled,
 )
@@ -77,7 +78,7 @@ def show_limits(found: Limits) -> None:
         for claim, ranges, limits, own in table
     ]
     printed.show((*HEADINGS[:3], f"distance at {at}"), table, entries)
-    say(*conclusion(found), "", _effort(found.runs, [found]))
+    say(*conclusion(found), "", *([*proofs(found), ""] if found.proved else []), _effort(found.runs, [found]))
 
 
 def _remark(limits: str) -> str:

@@ -22,6 +22,7 @@ from ...errors import LoomfmuError, listed, shown
 from ...traces import Verdict
 from ..evaluations import Evaluations
 from ..span import Span, set_twice, span_of, warnings_of
+from .proven import proven
 from .results import Boundary, ClaimLimits, Limit, Limits, Stretch
 from .search import Function, holds, near_zero, root, touching
 
@@ -229,6 +230,7 @@ def limit(
     set: dict[str, Any] | None = None,
     points: int = POINTS,
     rows: None = None,
+    prove: bool = False,
     progress: bool = False,
 ) -> Limits: ...
 
@@ -243,6 +245,7 @@ def limit(
     set: dict[str, Any] | None = None,
     points: int = POINTS,
     rows: int | None = None,
+    prove: bool = False,
     progress: bool = False,
 ) -> Limits | Boundary: ...
 
@@ -256,6 +259,7 @@ def limit(
     set: dict[str, Any] | None = None,  # the command's own word
     points: int = POINTS,
     rows: int | None = None,
+    prove: bool = False,
     progress: bool = False,
 ) -> Limits | Boundary:
     """Find the values of a variable at which each claim of a scene begins to fail or to hold.
@@ -272,6 +276,7 @@ def limit(
         set: values that differ from the scene's
         points: how many equally spaced values are tried first
         rows: how many values of the second variable there are, 11 by default
+        prove: prove each range for all shaft angles, as `loomfmu.prove`; of one variable only
         progress: show a progress bar on a terminal or in a notebook
 
     Returns:
@@ -290,13 +295,16 @@ def limit(
             f"rows = {shown(rows)} is how many values of a second variable are taken, but only {keys[0]} is"
             " varied; vary a second one or leave rows out"
         )
+    if prove and len(keys) > 1:
+        raise LoomfmuError("prove = True takes one variable; `loomfmu.prove` proves claims over several")
     points, rows = whole_points(points), whole_points(ROWS if rows is None else rows, "rows", 2)
     with prepare(scene, set=set) as loom:
         protected(loom.scene)
         first = span_of(loom.scene, keys[0], from_, to)
         if len(keys) == 1:
             with progress_bar(f"limits of {first.key}", points, wanted=progress) as advance:
-                return limits_of(loom, first, points, advance=advance)
+                found = limits_of(loom, first, points, advance=advance)
+            return proven(loom, found) if prove else found
         second = span_of(loom.scene, keys[1])
         if twice := set_twice([first, second]):
             raise LoomfmuError(f"{first.key} and {second.key} both set {twice[2]}")

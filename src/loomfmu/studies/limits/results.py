@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 from ...display import notebook
+from ...display.printed import rounded
 from ...errors import listed
 from ...traces import Verdict
 from ..span import Span
@@ -49,13 +50,27 @@ class Stretch:
 
 
 @dataclass(frozen=True)
+class ProvenRange:
+    """A range in which a claim is proven (SI), and the nearest values beyond it at which a run failed.
+
+    These are NaN where the range ends with the one that was searched, or none was found.
+    """
+
+    low: float
+    high: float
+    fails_below: float = math.nan
+    fails_above: float = math.nan
+
+
+@dataclass(frozen=True)
 class ClaimLimits:
     """The limits of one claim, ascending, and the ranges in which it holds.
 
     `points` are the values that were tried and the distances there, NaN where the claim fails without one.
     `depends` is false if the distance is the same everywhere. `verdict` is the one at the scene's own value.
     `doubts` are values about which a range is left out, since numerical errors leave the claim undecided
-    there, and why.
+    there, and why. `proven` are the ranges that are proven for all shaft angles, if that was asked for, and
+    `unproven` says why one is not.
     """
 
     claim: str
@@ -65,6 +80,8 @@ class ClaimLimits:
     verdict: Verdict
     points: tuple[tuple[float, float], ...] = field(repr=False)
     doubts: tuple[tuple[float, str], ...] = ()
+    proven: tuple[ProvenRange, ...] = ()
+    unproven: str = ""
 
 
 @dataclass(frozen=True, repr=False)
@@ -82,6 +99,8 @@ class Limits:
     ranges: tuple[Stretch, ...]
     runs: int
     warnings: tuple[str, ...] = ()
+    proved: bool = False
+    """Whether proofs were asked for."""
 
     def __bool__(self) -> bool:
         return bool(self.ranges)
@@ -99,7 +118,8 @@ class Limits:
 
     def _repr_html_(self) -> str:
         table = notebook.table(HEADINGS, rows(self))
-        return notebook.block(self.title, table, *map(notebook.line, conclusion(self)))
+        lines = (*conclusion(self), *(proofs(self) if self.proved else ()))
+        return notebook.block(self.title, table, *map(notebook.line, lines))
 
 
 @dataclass(frozen=True, repr=False)
@@ -220,6 +240,25 @@ def unsettled(found: Limits) -> Iterator[str]:
         if first := next(((value, why) for value, why in known if why), None):
             value, why = first
             yield f"At {found.span.show(value)} '{each.claim}' is {why}; its limits are of the shorter one."
+
+
+def proofs(found: Limits) -> Iterator[str]:
+    """Yield a sentence for each claim: where it is proven for all shaft angles, and what fails beyond."""
+    for each in found.claims:
+        for part in each.proven:
+            yield f"proven: {each.claim}, {_proven(part, found.span)}"
+        if each.unproven or not each.proven:
+            yield f"not proven: {each.claim} ({each.unproven or 'it holds nowhere'})"
+
+
+def _proven(part: ProvenRange, span: Span) -> str:
+    """A proven range, rounded inwards unless it ends with what was searched, and where runs fail."""
+    low = span.number(part.low) if part.low == span.low else rounded(part.low / span.factor, up=True)
+    high = span.number(part.high) if part.high == span.high else rounded(part.high / span.factor, up=False)
+    beyond = ((part.fails_below, False), (part.fails_above, True))
+    fails = [rounded(value / span.factor, up) for value, up in beyond if math.isfinite(value)]
+    unit = "" if span.unit == "1" else f" {span.unit}"
+    return f"from {low} to {high}{unit}" + (f"; it fails at {listed(fails)}{unit}" if fails else "")
 
 
 def _sentence(stretch: Stretch, found: Limits) -> str:

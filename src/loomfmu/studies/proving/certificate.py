@@ -9,7 +9,7 @@ from ...errors import LoomfmuError
 from ...files import starts_with, write_file
 from ...fmi import source
 from . import FORMAT
-from .prove import Proofs
+from .proofs import Proofs
 
 CERTIFICATE = starts_with("a certificate of a proof", b'{"format": "loomfmu proof', suffix=".json")
 

@@ -5,7 +5,8 @@ import json
 import math
 import re
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from functools import cache, partial
 from itertools import pairwise
 from pathlib import Path
@@ -35,8 +36,10 @@ from . import FORMAT
 from .intervals import ALL, MATH, Ends, Interval, Unknown, floor, joined, number
 
 SHAFT, START = "shaft", "start_angle"
-FINER = 6  # bisections of a box that this arithmetic, which is wider, may need on top
+FINE = 0.02  # [rad]: so narrow must a box be that a mechanism is in one of its phases
+FINER = 8  # bisections of a box that this arithmetic, which is wider, may need on top
 Box = tuple[Ends, ...]
+Faces = dict[int, int]  # of some sides, which end: 0 the lower, 1 the upper
 Numbers = dict[str, Interval]
 
 
@@ -122,17 +125,18 @@ class _Check:
         last = start + 2.0 * math.pi * self._scene.periods
         if isinstance(condition, Spans):
             (tree,) = covers
-            for box in list(_leaves(tuple(self._ends), iter(tree))):
-                if not _spans_last(chain, condition, (start, last), box):
-                    raise Refused(f"{name} is not confirmed for {_text(box)}")
+            lasting = partial(_spans_last, chain, condition, (start, last))
+            _confirm(name, tuple(self._ends), iter(tree), lasting, lambda _box, _faces: False)
             return
+        scale = [FINE, *(high - low for low, high in self._ends)]
+        holds, rises = (
+            partial(_all_over, scale, partial(each, chain, condition.any_of)) for each in (_holds, _rises)
+        )
         ranges = condition.ranges(start, last)
         if len(ranges) != len(covers):
             raise Refused(f"{name}: {len(covers)} ranges of the shaft angle, not {len(ranges)}")
         for angles, tree in zip(ranges, covers, strict=True):
-            for box in list(_leaves((angles, *self._ends), iter(tree))):
-                if not _holds(chain, condition.any_of, box, FINER):
-                    raise Refused(f"{name} is not confirmed for {_text(box)}")
+            _confirm(name, (angles, *self._ends), iter(tree), holds, rises)
 
 
 def _check_harmless(told: dict[str, Any]) -> None:
@@ -148,43 +152,74 @@ def _check_harmless(told: dict[str, Any]) -> None:
             raise Refused(f"{shown(name)} is not the name of a file beside the scene")
 
 
-def _leaves(box: Box, tree: Iterator[int]) -> Iterator[Box]:
-    """Yield the boxes of a tree, which are together this one. Raises Refused if it is not whole."""
-    stack = [box]
+def _confirm(
+    name: str,
+    box: Box,
+    tree: Iterator[int],
+    holds: Callable[[Box], bool],
+    rises: Callable[[Box, Faces], bool],
+) -> None:
+    """Confirm all boxes of a tree, which are together this one. Raises Refused, also for a tree with gaps.
+
+    `holds` says whether the claim holds all over a box, `rises` whether these ends of some sides are enough.
+    """
+    stack, sides = [box], len(box)
     while stack:
-        box = stack.pop()
-        side = next(tree, None)
-        if side is None or not isinstance(side, int) or not -1 <= side < len(box):
-            raise Refused("a box is missing")
-        if side < 0:
-            yield box
-        else:
-            low, high = box[side]
+        box, faces = stack.pop(), {}
+        while (code := next(tree, None)) is not None and sides <= code < 3 * sides:
+            side, upper = divmod(code - sides, 2)
+            faces[side] = upper
+        if code is None or not isinstance(code, int) or not -1 <= code < sides:
+            raise Refused(f"{name}: a box is missing")
+        if faces and not rises(box, faces):
+            raise Refused(f"{name} is not confirmed for {_text(box)}: one end of a side is not enough")
+        box = tuple((ends[faces[n]],) * 2 if n in faces else ends for n, ends in enumerate(box))
+        if code < 0 and not holds(box):
+            raise Refused(f"{name} is not confirmed for {_text(box)}")
+        if code >= 0:
+            low, high = box[code]
             middle = min(max(0.5 * (low + high), low), high)
-            stack += [(*box[:side], part, *box[side + 1 :]) for part in ((middle, high), (low, middle))]
+            stack += [(*box[:code], part, *box[code + 1 :]) for part in ((middle, high), (low, middle))]
     if next(tree, None) is not None:
-        raise Refused("there are more boxes than the box has parts")
+        raise Refused(f"{name}: there are more boxes than the box has parts")
 
 
 def _text(box: Box) -> str:
     return ", ".join(f"{low:.6g} to {high:.6g}" for low, high in box)
 
 
-def _holds(chain: "_Mechanisms", forms: Sequence[Sum], box: Box, finer: int) -> bool:
-    """Return whether one of the forms is not negative all over a box, or over each half of it."""
-    try:
-        found, middle = chain.numbers(box)
-        for form in forms:
-            if _narrowed(chain.value(form, found), chain.value(form, middle), box).ends[0] >= 0.0:
-                return True
-    except Unknown:
-        pass
-    side = max(range(len(box)), key=lambda each: (box[each][1] - box[each][0]) / max(1.0, abs(box[each][1])))
+def _all_over(
+    scale: Sequence[float], sure: Callable[..., bool], box: Box, *more: Any, finer: int = FINER
+) -> bool:
+    """Return whether something is sure all over a box, or over each half of it; `scale` is what is wide."""
+    with suppress(Unknown):
+        if sure(box, *more):
+            return True
+    side = max(range(len(box)), key=lambda each: (box[each][1] - box[each][0]) / scale[each])
     low, high = box[side]
     if not finer or not low < high:
         return False
     parts = ((low, 0.5 * (low + high)), (0.5 * (low + high), high))
-    return all(_holds(chain, forms, (*box[:side], part, *box[side + 1 :]), finer - 1) for part in parts)
+    halves = ((*box[:side], part, *box[side + 1 :]) for part in parts)
+    return all(_all_over(scale, sure, half, *more, finer=finer - 1) for half in halves)
+
+
+def _holds(chain: "_Mechanisms", forms: Sequence[Sum], box: Box) -> bool:
+    """Return whether one of the forms is not negative all over a box. Raises Unknown."""
+    found, middle = chain.numbers(box)
+    values = ((chain.value(form, found), chain.value(form, middle)) for form in forms)
+    return any(_narrowed(wide, here, box).ends[0] >= 0.0 for wide, here in values)
+
+
+def _rises(chain: "_Mechanisms", forms: Sequence[Sum], box: Box, faces: Faces) -> bool:
+    """Return whether no form falls from the low ends of some sides, or from the upper. Raises Unknown."""
+    found, _middle = chain.numbers(box)
+    slopes = [slopes for form in forms if (slopes := chain.value(form, found).slopes)]
+    return all(
+        each[side][1] <= 0.0 if upper else each[side][0] >= 0.0
+        for each in slopes
+        for side, upper in faces.items()
+    )
 
 
 def _spans_last(chain: "_Mechanisms", condition: Spans, run: Ends, box: Box) -> bool:

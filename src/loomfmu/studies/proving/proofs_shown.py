@@ -2,7 +2,7 @@
 
 from ...display import printed
 from ...display.printed import say
-from .prove import PROVEN, REFUTED, Proof, Proofs
+from .proofs import PROVEN, REFUTED, Proof, Proofs
 
 HEADINGS = ("", "claim", "how")
 

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+Ends = tuple[float, float]
 ULP = 2.0**-52
 TINY = 2.0**-1021  # more than a rounding of the smallest numbers
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -14,120 +14,17 @@ from ...cosim.reading import protected
 from ...cosim.run import prepare
 from ...cosim.scenes.headings import heading
 from ...cosim.scenes.scene import Scene
-from ...display import notebook
 from ...display.progress import progress as progress_bar
-from ...errors import LoomfmuError, listed
-from ...traces import Verdict
+from ...errors import LoomfmuError
 from ..evaluations import Evaluations
 from ..span import Span, set_twice, span_of, warnings_of
+from .proven import proven
+from .results import SAME, Cost, Tolerances, WorstCase
 
 Shares = tuple[float, ...]  # of the ranges, 0 to 1
 CORNERS = 6  # tolerances of which all corners are tried: 2 to that power
 SCATTERED = 16  # points within the box for each tolerance
 FIRST, LAST = 0.25, 2.0**-16  # steps of the search from the worst point found, as shares of a range
-SAME = 1e-9  # of the bound: distances that differ less are the same
-HEADINGS = ("verdict", "claim", "in the scene", "worst case", "where", "what it costs")
-
-
-@dataclass(frozen=True)
-class Cost:
-    """The cost of a tolerance for a claim: the distance from the bound that it takes, at the scene's own
-    value.
-    """
-
-    key: str
-    distance: float
-
-
-@dataclass(frozen=True)
-class WorstCase:
-    """The worst that was found of a claim: its verdict there, and the values (SI) by their keys.
-
-    `own` is the verdict with the scene's values; `costs` are the tolerances that cost something, the most
-    expensive first. `depends` is false if the distance is the same everywhere.
-    """
-
-    claim: str
-    own: Verdict
-    worst: Verdict
-    place: dict[str, float]
-    costs: tuple[Cost, ...]
-    depends: bool
-
-    @property
-    def shared(self) -> bool:
-        """Return whether it is worse than the scene even with any one value as in the scene."""
-        lost = self.own.distance - self.worst.distance
-        return not self.costs and lost > SAME * abs(self.worst.bound)
-
-
-@dataclass(frozen=True, repr=False)
-class Tolerances:
-    """The worst cases of a scene's claims; true if each claim holds in its own. A search, not a proof."""
-
-    title: str
-    spans: tuple[Span, ...]
-    claims: tuple[WorstCase, ...]
-    runs: int
-    warnings: tuple[str, ...] = ()
-
-    def __bool__(self) -> bool:
-        return all(each.worst for each in self.claims)
-
-    def __repr__(self) -> str:
-        failing = sum(not each.worst for each in self.claims)
-        return (
-            f"<Tolerances of {self.title}: {failing} of {len(self.claims)} claims fail in their worst case>"
-        )
-
-    def _repr_html_(self) -> str:
-        table = notebook.table(HEADINGS, rows(self))
-        return notebook.block(self.title, table, *map(notebook.line, unsettled(self)))
-
-
-def rows(found: Tolerances) -> list[tuple[str, ...]]:
-    """A row of the table for each claim, below `HEADINGS`: distances from the bound."""
-    return [
-        (
-            each.worst.word,
-            each.claim,
-            each.own.shown_distance,
-            each.worst.shown_distance,
-            _where(each, found),
-            _costs(each),
-        )
-        for each in found.claims
-    ]
-
-
-def unsettled(found: Tolerances) -> Iterator[str]:
-    """Yield a sentence for each claim whose worst case a longer run would make worse."""
-    for each in found.claims:
-        if each.worst.unsettled:
-            yield f"In its worst case '{each.claim}' is {each.worst.unsettled}."
-
-
-def _where(each: WorstCase, found: Tolerances) -> str:
-    """The values that make it the worst case."""
-    if not each.depends:
-        return "the same everywhere"
-    matter = {cost.key for cost in each.costs} or (each.place if each.shared else ())
-    places = [f"{span.key} = {span.show(each.place[span.key])}" for span in found.spans if span.key in matter]
-    return ", ".join(places) or f"worst at the scene's own value{'s' * (len(found.spans) > 1)}"
-
-
-def _costs(each: WorstCase) -> str:
-    """Return the cost of each tolerance in words, the most expensive first."""
-    if each.shared:
-        return "cost: none alone; it is as bad without any one of them"
-    if not each.costs:
-        return "cost: none"
-    bound = abs(each.worst.bound)
-    parts = []
-    for cost in each.costs:
-        share = f"{100.0 * cost.distance / bound:.3g} %" if bound else each.worst.shown(cost.distance)
-        parts.append(f"{share} from {cost.key}")
-    return f"cost: {listed(parts)}"
 
 
 def tolerances(
@@ -135,6 +32,7 @@ def tolerances(
     *,
     vary: Sequence[str] = (),
     set: dict[str, Any] | None = None,  # the command's own word
+    prove: bool = False,
     progress: bool = False,
 ) -> Tolerances:
     """Search the worst case of every claim within the tolerances of a scene.
@@ -147,6 +45,7 @@ def tolerances(
         vary: tolerances such as "belt.guide_clearance=0.2mm..0.5mm"; by default those of the scene's
             table [tolerances]
         set: values that differ from the scene's
+        prove: also prove the worst cases, for all shaft angles and all values within the tolerances
         progress: show a progress bar on a terminal or in a notebook
 
     Raises:
@@ -170,7 +69,8 @@ def tolerances(
         _check(spans)
         points = _points(spans)
         with progress_bar("worst cases", len(points) + len(loaded.claims), wanted=progress) as advance:
-            return _Box(loom, spans).searched(points, advance)
+            found = _Box(loom, spans).searched(points, advance)
+        return replace(found, proofs=proven(loom, spans, found.claims)) if prove else found
 
 
 def _span(scene: Scene, key: str, low: Any, high: Any) -> Span:

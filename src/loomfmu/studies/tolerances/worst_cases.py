@@ -5,7 +5,7 @@ from typing import Any
 from ...display import printed
 from ...display.printed import say
 from ...traces.plotting import COLOURS, figure, fixed_style
-from .tolerances import HEADINGS, Tolerances, rows, unsettled
+from .results import HEADINGS, Tolerances, proofs, rows, unsettled
 
 WIDTH, LINE, REST = 8.0, 0.42, 1.4  # [in]
 
@@ -20,8 +20,9 @@ def show(found: Tolerances) -> None:
         for word, claim, own, worst, where, costs in table
     ]
     printed.show(HEADINGS, table, entries)
-    say(*unsettled(found))
-    say(f"{found.runs} runs; this is a search, not a proof, so worse cases may exist")
+    proven = ", unless they are proven" if found.proofs else ""
+    say(*unsettled(found), *([*proofs(found), ""] if found.proofs else []))
+    say(f"{found.runs} runs; this is a search, not a proof, so worse cases may exist" + proven)
 
 
 @fixed_style()

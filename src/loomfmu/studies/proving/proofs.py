@@ -1,0 +1,51 @@
+"""Proofs: of each claim its status, and what shows it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from ...cosim.claims.conditions import Condition
+from ...cosim.scenes.scene import Scene
+from ...declaring.variables import Component
+from ..span import Span
+from .cover import Cover
+
+PROVEN, REFUTED, OPEN, IMPOSSIBLE = "proven", "refuted", "open", "cannot be proven"
+
+
+@dataclass(frozen=True)
+class Proof:
+    """One claim over the box: its `status`, and why; `share` of the box is proven, by so many `boxes`.
+
+    A claim that is refuted has the values of a `witness`, at which its run fails.
+    """
+
+    claim: str
+    status: str
+    why: str = ""
+    share: float = 0.0
+    boxes: int = 0
+    witness: Mapping[str, str] = field(default_factory=dict)
+    covers: tuple[tuple[Condition, tuple[Cover, ...]], ...] = field(default=(), repr=False)
+    components: tuple[type[Component], ...] = field(default=(), repr=False)
+    """Those of a proof that a certificate can confirm: over shaft angles, not over time."""
+
+    def __bool__(self) -> bool:
+        return self.status == PROVEN
+
+
+@dataclass(frozen=True, repr=False)
+class Proofs:
+    """The proofs of a scene `over` a box; true if all claims are proven."""
+
+    scene: Scene
+    over: tuple[Span, ...]
+    claims: tuple[Proof, ...]
+    warnings: tuple[str, ...] = ()
+
+    def __bool__(self) -> bool:
+        return bool(self.claims) and all(self.claims)
+
+    def __repr__(self) -> str:
+        proven = f"{sum(map(bool, self.claims))} of {len(self.claims)} claims proven"
+        others = "".join(f"\n  {each.status}: {each.claim}" for each in self.claims if not each)
+        return f"<Proofs of {self.scene.name}: {proven}{others}>"
