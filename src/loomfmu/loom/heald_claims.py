@@ -66,7 +66,7 @@ class Dwell(_Span):
         return self.asked(trace, "dwell", text, "lift", self.tolerance)
 
     def conditions(self, run: Wired) -> tuple[Condition, ...]:
-        return tuple(Spans(end, self.at_least) for end in self.ends(run, self.tolerance))
+        return (Spans(self.ends(run, self.tolerance), self.at_least),)
 
 
 class ClearShed(_Span):
@@ -91,7 +91,7 @@ class ClearShed(_Span):
 
     def conditions(self, run: Wired) -> tuple[Condition, ...]:
         height = height_of(self.heald, self.lifted_by, run)
-        return tuple(Spans(Sum(((side, height),), -self.clearance), self.at_least) for side in (1.0, -1.0))
+        return (Spans(tuple(Sum(((side, height),), -self.clearance) for side in (1.0, -1.0)), self.at_least),)
 
 
 class DwellContains(_Lifted):

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from ..cosim.claims.arguments import Edges, Flag, Name, Names, Quantity, Window, argument
 from ..cosim.claims.claim import AT_LEAST, AT_MOST, LANDINGS, LENGTH, ONE, SPEED, VELOCITY, Claim
-from ..cosim.claims.conditions import Always, Condition, Sum
+from ..cosim.claims.conditions import Always, Condition, Sometime, Sum, Unprovable
 from ..cosim.claims.judging import Form, Question, needs_shaft
 from ..cosim.claims.movers import Wired
 from ..errors import LoomfmuError
@@ -65,10 +65,15 @@ class RapierInOpenShed(_InShed):
 
     def conditions(self, run: Wired) -> tuple[Condition, ...]:
         heights = [height_of(frame, self.lifted_by, run) for frame in self.healds or frames_of(run)]
+        if not heights:
+            raise Unprovable("the scene has no heald frame")
         room = 0.5 * self.head_height
-        return tuple(
-            Always((self.outside, Sum(((1.0, height),), -room), Sum(((-1.0, height),), -room)))
-            for height in heights
+        return (
+            Sometime(self.outside.negated),
+            *(
+                Always((self.outside, Sum(((1.0, height),), -room), Sum(((-1.0, height),), -room)))
+                for height in heights
+            ),
         )
 
 
@@ -88,7 +93,7 @@ class ReedClearOfRapier(_InShed):
 
     def conditions(self, run: Wired) -> tuple[Condition, ...]:
         distance = ((1.0, f"{self.reed}.front_limit"), (-1.0, f"{self.reed}.position"))
-        return (Always((self.outside, Sum(distance, -self.clearance))),)
+        return Sometime(self.outside.negated), Always((self.outside, Sum(distance, -self.clearance)))
 
 
 class _Transfer(Claim, kind=False):
@@ -98,6 +103,11 @@ class _Transfer(Claim, kind=False):
 
     reads = ("transfer",)
     grid = LANDINGS
+
+    @property
+    def apart(self) -> Sum:
+        """Return what is not negative while the heads overlap by no more than the hooks need."""
+        return Sum(((1.0, f"{self.transfer}.needed_overlap"), (-1.0, f"{self.transfer}.overlap")))
 
 
 class TransferInTime(_Transfer):
@@ -123,6 +133,9 @@ class TransferInTime(_Transfer):
     def extremes(self) -> list[tuple[str, float]]:
         return [(f"{self.transfer}.overlap", -1.0)]
 
+    def conditions(self, run: Wired) -> tuple[Condition, ...]:
+        return (Sometime(self.apart.negated, self.window),)
+
 
 class TransferSpeed(_Transfer):
     """While the heads overlap by what the hooks need, they move no faster relative to each other."""
@@ -140,9 +153,9 @@ class TransferSpeed(_Transfer):
         return Question("transfer_speed", [form], signals, numbers)
 
     def conditions(self, run: Wired) -> tuple[Condition, ...]:
-        overlap, speed = f"{self.transfer}.overlap", f"{self.transfer}.closing_velocity"
-        apart = Sum(((1.0, f"{self.transfer}.needed_overlap"), (-1.0, overlap)))
-        return tuple(Always((apart, Sum(((side, speed),), self.at_most))) for side in (1.0, -1.0))
+        speed = f"{self.transfer}.closing_velocity"
+        bounded = (Always((self.apart, Sum(((side, speed),), self.at_most))) for side in (1.0, -1.0))
+        return (Sometime(self.apart.negated), *bounded)
 
 
 class NipHolds(Claim):

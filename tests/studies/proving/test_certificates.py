@@ -1,6 +1,7 @@
 """Certificates are confirmed, and forged ones refused."""
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,20 @@ from loomfmu.studies.proving.prove import prove
 
 pytest.importorskip("flint")
 from loomfmu.studies.proving.check import check
+
+WITHOUT_FRAMES = """
+revolutions = 1
+[loom]
+machine = "WL680-3600"
+head = "G6300 left"
+[shaft]
+speed = "600 rev/min"
+[[claims]]
+name = "shed"
+kind = "rapier_in_open_shed"
+head_height = "180 mm"
+"""
+RAPIERS = Path(__file__).parents[3] / "sims" / "both_rapiers.toml"
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +49,10 @@ def test_a_certificate_is_confirmed(told: dict[str, Any], tmp_path: Path) -> Non
     lines = _check(told, tmp_path)
     names = ("margin", "dwell", "transfer")
     assert [line.split(" (")[0] for line in lines] == [f"confirmed: {name}" for name in names]
-    assert "bound = 0.1) for all shaft angles, shaft.speed from 67.0206433 to 67.5442421 (SI)" in lines[0]
+    assert (
+        "bound = 0.1) for all shaft angles of 2 revolutions, shaft.speed from 67.0206433 to 67.5442421 (SI)"
+        in lines[0]
+    )
 
 
 def _wider(told: dict[str, Any]) -> None:
@@ -118,7 +136,20 @@ def _nothing(told: dict[str, Any]) -> None:
     told["claims"] = []
 
 
+def _angles_not_reached(told: dict[str, Any]) -> None:
+    told["scene"] = told["scene"].replace("revolutions = 2", "revolutions = 0.1", 1)
+    told["claims"] = [{"name": "transfer", "conditions": [[]]}]
+
+
+def _no_heald_frame(told: dict[str, Any]) -> None:
+    """Claim something of all frames where there is none."""
+    told["scene"] = WITHOUT_FRAMES
+    told["claims"] = [{"name": "shed", "conditions": []}]
+
+
 FORGED = [
+    (_angles_not_reached, "never reaches 140 deg"),
+    (_no_heald_frame, "no heald frame"),
     (_another_side, "varies twice"),
     (_twice, "varies twice"),
     (_two_of_one_name, "under one name"),
@@ -149,6 +180,18 @@ def test_a_forged_certificate_is_refused(
     forge(forged)
     with pytest.raises(LoomfmuError, match=message):
         _check(forged, tmp_path)
+
+
+def test_a_meeting_is_confirmed_at_the_angle_that_the_certificate_names(tmp_path: Path) -> None:
+    found = prove(RAPIERS, claims=["the heads meet in time"], set={"transfer.needed_overlap": "0.1 m"})
+    certificate.write(found, tmp_path / "proof.json")
+    told = json.loads((tmp_path / "proof.json").read_text())
+    assert len(_check(told, tmp_path)) == 1
+    (covers,) = told["claims"][0]["conditions"]
+    for angle, message in ((1.0, "is not within"), (math.nan, "is not within"), (3.3, "is not confirmed")):
+        covers[0][0] = angle.hex()
+        with pytest.raises(LoomfmuError, match=message):
+            _check(told, tmp_path)
 
 
 @pytest.mark.parametrize("text", ["", "{}", '{"format": "loomfmu proof 9"}', "[1, 2]", "[" * 5000])

@@ -1,3 +1,5 @@
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,8 @@ from loomfmu.cosim.scenes.scene import Scene, parse
 from loomfmu.errors import LoomfmuError
 from loomfmu.studies.proving.proofs import Proofs
 from loomfmu.studies.proving.prove import prove
+
+RAPIERS = Path(__file__).parents[3] / "sims" / "both_rapiers.toml"
 
 
 def _status(found: Proofs) -> dict[str, str]:
@@ -44,6 +48,23 @@ def test_a_dwell_at_an_angle_for_all_reductions(loom: Scene, at: str, status: st
     scene = parse(text.replace("[[claims]]", "[dobby]\nlaw = 'sloped-sine'\n[[claims]]", 1), "loom")
     found = prove(scene, over=["dobby.speed_reduction=0.5..0.7"], claims=["transfer"])
     assert _status(found) == {"transfer": status}
+
+
+@pytest.mark.parametrize(
+    ("overlap", "meet", "speed"),
+    [("0.1 m", "proven", "proven"), ("0.9 m", "refuted", "cannot be proven")],
+)
+def test_nothing_is_proven_of_heads_that_never_meet(overlap: str, meet: str, speed: str) -> None:
+    claims = ["the heads meet in time", "the hooks pass each other slowly"]
+    found = prove(RAPIERS, set={"transfer.needed_overlap": overlap}, claims=claims)
+    assert list(_status(found).values()) == [meet, speed]
+
+
+def test_a_span_that_never_begins_does_not_last() -> None:
+    """Nothing is said of spans where there are none: cells are outside, or inside for long enough."""
+    spans, sides = Spans((Sum(()), Sum(((1.0, "other"),))), 1.5), {Sum(()): OUT}
+    assert not spans.hold(0.0, 6.0, lambda _form, edges: np.full(len(edges) - 1, OUT))
+    assert spans.hold(0.0, 6.0, lambda form, edges: np.full(len(edges) - 1, sides.get(form, IN)))
 
 
 def test_what_few_boxes_cannot_decide_is_left_open_with_its_share(loom: Scene) -> None:
@@ -127,7 +148,7 @@ KINDS = {"r": RISES, "i": IN, "f": FALLS, "o": OUT, "u": UNKNOWN}
 def test_spans_are_proven_only_where_they_are_known(kinds: str, proven: bool) -> None:
     edges = np.arange(len(kinds) + 1.0)
     cells = np.array([KINDS[each] for each in kinds])
-    assert bool(Spans(Sum(()), 1.5).doubtful(cells, edges).any()) != proven
+    assert bool(Spans((Sum(()),), 1.5).doubtful(cells, edges).any()) != proven
 
 
 def test_a_start_up_that_varies_is_proven_over_time(loom: Scene) -> None:

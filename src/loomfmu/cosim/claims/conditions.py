@@ -4,7 +4,7 @@ A run shows a claim at its samples and between them; a condition says what must 
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import ClassVar
@@ -32,6 +32,11 @@ class Sum:
     terms: tuple[tuple[float, str], ...]
     constant: float = 0.0
 
+    @property
+    def negated(self) -> "Sum":
+        """Return what is not negative where this is not positive."""
+        return Sum(tuple((-share, name) for share, name in self.terms), -self.constant)
+
 
 @dataclass(frozen=True)
 class Always:
@@ -47,21 +52,57 @@ class Always:
         return self.any_of
 
     def ranges(self, first: float, last: float) -> list[tuple[float, float]]:
-        """Return the ranges of the shaft angle between two angles that it is about [rad]."""
+        """Return the ranges of the shaft angle between two angles that it is about [rad].
+
+        Raises Unprovable if it names an angle, or a window, that is not between them.
+        """
         if self.window is None and not self.angles:
             return [(first, last)]
-        turn, found = 2.0 * math.pi, []
+        turn = 2.0 * math.pi
+        found: list[tuple[float, float]] = []
         wanted = [(angle, 0.0) for angle in self.angles]
         if self.window is not None:
             wanted = [(self.window.start, self.window.width)]
         for start, width in wanted:
+            before = len(found)
             for number in range(
                 math.floor((first - start - width) / turn), math.ceil((last - start) / turn) + 1
             ):
                 low, high = max(first, start + turn * number), min(last, start + turn * number + width)
                 if low <= high:
                     found.append((low, high))
+            if len(found) == before:
+                raise Unprovable(
+                    f"the run never reaches {math.degrees(start):.7g} deg, which the claim names"
+                )
         return found
+
+
+@dataclass(frozen=True)
+class Sometime:
+    """At some angle of the run, or of each whole pass through a window, this is not negative."""
+
+    form: Sum
+    window: Window | None = None
+
+    angles: ClassVar[tuple[float, ...]] = ()
+
+    @property
+    def forms(self) -> tuple[Sum, ...]:
+        """Return all that it is about."""
+        return (self.form,)
+
+    def ranges(self, first: float, last: float) -> list[tuple[float, float]]:
+        """Return the ranges of the shaft angle between two angles, in each of which it is asked for [rad].
+
+        Raises Unprovable if there is none.
+        """
+        found = Always((self.form,), self.window).ranges(first, last)
+        whole = (self.window.width if self.window else last - first) * (1.0 - 1e-12)
+        passes = [(low, high) for low, high in found if high - low >= whole]
+        if not passes:
+            raise Unprovable("the run does not pass through the window of the claim")
+        return passes
 
 
 OUT, RISES, FALLS, IN, UNKNOWN = range(5)  # what a form does in a cell of angles
@@ -69,9 +110,12 @@ OUT, RISES, FALLS, IN, UNKNOWN = range(5)  # what a form does in a cell of angle
 
 @dataclass(frozen=True)
 class Spans:
-    """Whenever this stops being negative, it stays so for an angle [rad], unless the run ends before."""
+    """Whenever one of these stops being negative, it stays so for an angle [rad], unless the run ends before.
 
-    inside: Sum
+    And one of them does so at least once.
+    """
+
+    insides: tuple[Sum, ...]
     at_least: float
 
     widest: ClassVar[float] = 0.05  # a cell of angles, at first [rad]
@@ -80,42 +124,59 @@ class Spans:
     @property
     def forms(self) -> tuple[Sum, ...]:
         """Return all that it is about."""
-        return (self.inside,)
+        return self.insides
 
-    def hold(self, first: float, last: float, kinds_of: Callable[[Floats], NDArray[np.int_]]) -> bool:
-        """Return whether all spans between two angles last long enough.
+    def hold(self, first: float, last: float, kinds_of: Callable[[Sum, Floats], NDArray[np.int_]]) -> bool:
+        """Return whether all spans between two angles last long enough, and there is one.
 
-        `kinds_of` says what `inside` does between edges. Cells are bisected where spans begin and end.
+        `kinds_of` says what a form does between edges. Cells are bisected where spans begin and end.
         """
-        edges = np.linspace(first, last, max(2, math.ceil((last - first) / self.widest)) + 1)
-        while (doubtful := self.doubtful(kinds_of(edges), edges)).any():
-            if (np.diff(edges)[doubtful] < self.finest).any():
-                return False
-            edges = np.sort(np.concatenate([edges, 0.5 * (edges[:-1] + edges[1:])[doubtful]]))
-        return True
+        shown = False
+        for form in self.insides:
+            edges = np.linspace(first, last, max(2, math.ceil((last - first) / self.widest)) + 1)
+            while (doubtful := self.doubtful(kinds := kinds_of(form, edges), edges)).any():
+                if (np.diff(edges)[doubtful] < self.finest).any():
+                    return False
+                edges = np.sort(np.concatenate([edges, 0.5 * (edges[:-1] + edges[1:])[doubtful]]))
+            shown |= any(each.length >= max(self.at_least, 1e-300) for each in _spans(kinds, edges))
+        return shown
 
     def doubtful(self, kinds: NDArray[np.int_], edges: Floats) -> NDArray[np.bool_]:
-        """Return the cells to bisect: those of each stretch that may be a span which is too short.
-
-        `kinds` says what `inside` does in each cell. A span is known where it only rises, then is inside,
-        then only falls. An end of the run may cut it off.
-        """
+        """Return the cells to bisect: those of each stretch that may be a span which is too short."""
         doubtful = np.zeros(len(kinds), dtype=bool)
-        outside = [-1, *np.flatnonzero(kinds == OUT).tolist(), len(kinds)]
-        for before, after in pairwise(outside):
-            cells = slice(before + 1, after)
-            group = kinds[cells]
-            rises, inside, falls = (int(np.sum(group == kind)) for kind in (RISES, IN, FALLS))
-            known = np.array_equal(group, [RISES] * rises + [IN] * inside + [FALLS] * falls)
-            cut = (before == -1 and not rises) or (after == len(kinds) and not falls)
-            length = float(np.diff(edges)[cells][rises : rises + inside].sum()) * (1.0 - 1e-12)
-            long_enough = cut or length >= self.at_least if inside else not (rises and falls)
-            if not (known and long_enough):
-                doubtful[cells] = group != IN
+        for each in _spans(kinds, edges):
+            if not (each.known and (each.excused or each.length >= self.at_least)):
+                doubtful[each.cells] = kinds[each.cells] != IN
         return doubtful
 
 
-Condition = Always | Spans
+@dataclass(frozen=True)
+class _Span:
+    """Cells of angles that may be a span: its least length [rad], 0 where that is not known.
+
+    It is `excused` from being long where an end of the run cuts it off, or where there is none.
+    """
+
+    cells: slice
+    known: bool
+    excused: bool
+    length: float
+
+
+def _spans(kinds: NDArray[np.int_], edges: Floats) -> Iterator[_Span]:
+    """Yield each stretch that may be a span. It is known where it only rises, is inside, then only falls."""
+    outside = [-1, *np.flatnonzero(kinds == OUT).tolist(), len(kinds)]
+    for before, after in pairwise(outside):
+        cells = slice(before + 1, after)
+        group = kinds[cells]
+        rises, inside, falls = (int(np.sum(group == kind)) for kind in (RISES, IN, FALLS))
+        known = np.array_equal(group, [RISES] * rises + [IN] * inside + [FALLS] * falls)
+        cut = (before == -1 and not rises) or (after == len(kinds) and not falls)
+        length = float(np.diff(edges)[cells][rises : rises + inside].sum()) * (1.0 - 1e-12)
+        yield _Span(cells, known, cut if inside else not (rises and falls), length * known)
+
+
+Condition = Always | Sometime | Spans
 
 
 def above(signal: str, bound: float | str, share: float = 1.0, window: Window | None = None) -> Always:

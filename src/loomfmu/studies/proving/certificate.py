@@ -5,10 +5,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from ...cosim.claims.conditions import Condition, Sometime
 from ...errors import LoomfmuError
 from ...files import starts_with, write_file
 from ...fmi import source
 from . import FORMAT
+from .cover import Cover
 from .proofs import Proofs
 
 CERTIFICATE = starts_with("a certificate of a proof", b'{"format": "loomfmu proof', suffix=".json")
@@ -39,10 +41,17 @@ def write(proofs: Proofs, path: Path, inputs: Sequence[Path] = (), overwrite: bo
         "claims": [
             {
                 "name": proof.claim,
-                "conditions": [[cover.tree for cover in covers] for _condition, covers in proof.covers],
+                "conditions": [
+                    [_told(condition, cover) for cover in covers] for condition, covers in proof.covers
+                ],
             }
             for proof in certified
         ],
     }
     write_file(path, json.dumps(told).encode(), CERTIFICATE, inputs, overwrite)
     return [proof.claim for proof in certified]
+
+
+def _told(condition: Condition, cover: Cover) -> list[Any]:
+    """Return a cover for JSON; that of what is asked for at one angle begins with the angle."""
+    return [float(cover.whole[0, 0]).hex(), *cover.tree] if isinstance(condition, Sometime) else cover.tree

@@ -17,7 +17,19 @@ import numpy as np
 from ...components import COMPONENTS
 from ...components.shaft_driven import FOLLOWING, ShaftDriven
 from ...cosim.claims.claims import name_of
-from ...cosim.claims.conditions import FALLS, IN, OUT, RISES, UNKNOWN, Condition, Spans, Sum, names_of
+from ...cosim.claims.conditions import (
+    FALLS,
+    IN,
+    OUT,
+    RISES,
+    UNKNOWN,
+    Condition,
+    Sometime,
+    Spans,
+    Sum,
+    Unprovable,
+    names_of,
+)
 from ...cosim.planning.pruning import prune
 from ...cosim.reading import requested
 from ...cosim.scenes import scene as scenes
@@ -59,7 +71,7 @@ def check(path: str | Path) -> list[str]:
                 (Path(folder) / name).parent.mkdir(parents=True, exist_ok=True)
                 (Path(folder) / name).write_text(text, encoding="utf-8")
             return _Check(told, folder).lines
-    except Refused as error:
+    except (Refused, Unprovable) as error:
         raise Refused(f"{path}: {error}") from None
     except (
         ValueError,
@@ -95,15 +107,16 @@ class _Check:
                         raise Refused(f"{name}.{variable} changes with {key}")
             self._sides |= targets
         self._equations = told["equations"]
-        ranges = zip(told["over"], self._ends, strict=True)
-        within = "".join(f", {key} from {low:.9g} to {high:.9g} (SI)" for key, (low, high) in ranges)
+        within = f" of {scene.periods:g} revolution{'s' * (scene.periods != 1)}"
+        for (key, _ends), (low, high) in zip(told["over"].items(), self._ends, strict=True):
+            within += f", {key} from {low:.9g} to {high:.9g} (SI)"
         names = [name_of(table) for table in scene.claims]
         self.lines: list[str] = []
         if not told["claims"] or any(names.count(claim["name"]) != 1 for claim in told["claims"]):
             raise Refused("it proves no claim that the scene has under one name")
         for claim in told["claims"]:
             conditions = self._asked.claims[names.index(claim["name"])].conditions(self._asked)
-            if len(conditions) != len(claim["conditions"]):
+            if not conditions or len(conditions) != len(claim["conditions"]):
                 raise Refused(
                     f"{claim['name']}: {len(claim['conditions'])} conditions, not {len(conditions)}"
                 )
@@ -130,13 +143,19 @@ class _Check:
             return
         scale = [FINE, *(high - low for low, high in self._ends)]
         holds, rises = (
-            partial(_all_over, scale, partial(each, chain, condition.any_of)) for each in (_holds, _rises)
+            partial(_all_over, scale, partial(each, chain, condition.forms)) for each in (_holds, _rises)
         )
         ranges = condition.ranges(start, last)
         if len(ranges) != len(covers):
             raise Refused(f"{name}: {len(covers)} ranges of the shaft angle, not {len(ranges)}")
-        for angles, tree in zip(ranges, covers, strict=True):
-            _confirm(name, (angles, *self._ends), iter(tree), holds, rises)
+        for (low, high), codes in zip(ranges, covers, strict=True):
+            tree = iter(codes)
+            if isinstance(condition, Sometime):
+                angle = float.fromhex(next(tree))
+                if not low <= angle <= high:
+                    raise Refused(f"{name}: {angle} rad is not within {low} to {high}")
+                low = high = angle
+            _confirm(name, ((low, high), *self._ends), tree, holds, rises)
 
 
 def _check_harmless(told: dict[str, Any]) -> None:
@@ -226,10 +245,13 @@ def _spans_last(chain: "_Mechanisms", condition: Spans, run: Ends, box: Box) -> 
     """Return whether all spans within a run last long enough, all over a box of parameters."""
 
     @cache
-    def kind(cell: Ends) -> int:
-        return _kind(chain, condition.inside, (cell, *box))
+    def kind(form: Sum, cell: Ends) -> int:
+        return _kind(chain, form, (cell, *box))
 
-    return condition.hold(*run, lambda edges: np.array([kind(cell) for cell in pairwise(edges.tolist())]))
+    def kinds(form: Sum, edges: Any) -> Any:
+        return np.array([kind(form, cell) for cell in pairwise(edges.tolist())])
+
+    return condition.hold(*run, kinds)
 
 
 def _kind(chain: "_Mechanisms", form: Sum, box: Box) -> int:

@@ -13,6 +13,8 @@ from .chain import Chain, Number
 from .cover import Decision
 from .spans import Floats
 
+TRIED = 4097  # angles at which something may happen
+
 
 def value_of(form: Sum, chain: Chain, numbers: Mapping[str, Number], boxes: Floats) -> Number:
     """Return a sum of signals and parameters over boxes."""
@@ -35,6 +37,14 @@ def decide_always(chain: Chain, condition: Always, scale: Floats, boxes: Floats)
         axis=-1,
     )
     return decision(low >= 0.0, slopes, scale, boxes)
+
+
+def likely(chain: Chain, form: Sum, angles: tuple[float, float], box: Floats) -> float:
+    """Return the angle, or the time, within two at which a form is highest in the middle of a box."""
+    places = np.linspace(*angles, TRIED)
+    points = np.tile(box.mean(axis=1), (TRIED, 1))
+    boxes = np.repeat(np.column_stack([places, points])[..., None], 2, axis=-1)
+    return float(places[value_of(form, chain, chain.numbers(boxes), boxes).values[:, 0].argmax()])
 
 
 @dataclass
@@ -81,12 +91,12 @@ def decision(proven: NDArray[np.bool_], slopes: Floats, scale: Floats, boxes: Fl
 
 def decide_spans(chain: Chain, condition: Spans, run: tuple[float, float], boxes: Floats) -> Decision:
     """Return the boxes in which every span that the run shows whole is long enough."""
-    proven = [condition.hold(*run, partial(_kinds, chain, condition.inside, box)) for box in boxes]
+    proven = [condition.hold(*run, partial(_kinds, chain, box)) for box in boxes]
     widths = boxes[..., 1] - boxes[..., 0]
     return Decision(np.array(proven, dtype=bool), boxes, widths / np.maximum(widths.max(axis=0), 1e-300))
 
 
-def _kinds(chain: Chain, form: Sum, box: Floats, edges: Floats) -> NDArray[np.int_]:
+def _kinds(chain: Chain, box: Floats, form: Sum, edges: Floats) -> NDArray[np.int_]:
     """Say of each cell of angles how a form moves in it, all over a box of parameters."""
     boxes = np.empty((len(edges) - 1, 1 + len(box), 2))
     boxes[:, 0, 0], boxes[:, 0, 1] = edges[:-1], edges[1:]

@@ -8,14 +8,14 @@ from itertools import cycle, product
 import numpy as np
 
 from ... import units
-from ...cosim.claims.conditions import Always, Condition, Spans, Unprovable, names_of
+from ...cosim.claims.conditions import Always, Condition, Sometime, Spans, Unprovable, names_of
 from ...cosim.prepared import Prepared
 from ...cosim.reading import requested
 from ...cosim.results import Evaluation
 from ..span import Span
 from .chain import SHAFT, START, Chain
 from .cover import Cover, cover
-from .decisions import Lowest, decide_always, decide_spans
+from .decisions import Lowest, decide_always, decide_spans, likely
 from .proofs import IMPOSSIBLE, OPEN, PROVEN, REFUTED, Proof
 from .spans import Ends, Floats
 
@@ -47,6 +47,8 @@ class Search:
         witness = self._witness(number, self._runs)
         if witness is not None:
             return Proof(name, REFUTED, witness=witness)
+        if doubt := self._doubt(number):
+            return Proof(name, IMPOSSIBLE, doubt)
         covers = tuple((each, self._covers(each, chain)) for each in conditions)
         parts = [each for _condition, many in covers for each in many]
         share = math.prod(each.share for each in parts)
@@ -98,8 +100,11 @@ class Search:
         for name in names_of(conditions):
             if not np.isfinite(chain.number(name, numbers, point).values).any():
                 raise Unprovable(f"{name} is found by a search that cannot be enclosed")
-        for each in conditions if chain.timed else ():
-            if isinstance(each, Spans) or each.window or each.angles:
+        for each in conditions:
+            if not chain.timed:
+                if not isinstance(each, Spans):
+                    each.ranges(first, last)
+            elif isinstance(each, Spans) or each.window or each.angles:
                 raise Unprovable("the speed changes, or a value follows a table, and the claim names angles")
 
     # ---- covers
@@ -127,15 +132,20 @@ class Search:
         if isinstance(condition, Spans):
             decide = partial(decide_spans, chain, condition, self._run_of(chain))
             return (cover(self._box, decide, self._most // 64),)
-        decide = partial(decide_always, chain, condition, self._scale(chain))
+        always = Always(condition.forms)
+        decide = partial(decide_always, chain, always, self._scale(chain))
         return tuple(cover(box, decide, self._most) for box in self._boxes(condition, chain))
 
-    def _boxes(self, condition: Always, chain: Chain) -> Floats:
-        """Return the box with all ranges of the angle, or of the time, that a condition is about."""
+    def _boxes(self, condition: Always | Sometime, chain: Chain) -> list[Floats]:
+        """Return the box with all ranges of the angle, or of the time, that a condition is about.
+
+        Where something is asked for at one angle of a range, it is the likeliest.
+        """
         first, last = self._run_of(chain)
         ranges = [(first, last)] if chain.timed else condition.ranges(first, last)
-        boxes = [np.concatenate([[each], self._box]) for each in ranges]
-        return np.array(boxes).reshape(-1, 1 + len(self._box), 2)
+        if isinstance(condition, Sometime):
+            ranges = [(likely(chain, condition.form, each, self._box),) * 2 for each in ranges]
+        return [np.concatenate([[each], self._box]) for each in ranges]
 
     def _scale(self, chain: Chain) -> Floats:
         """Return the widths at which the sides of a box are equally wide, where nothing else is known."""
@@ -161,6 +171,14 @@ class Search:
         """The values in the middle of a box, which may have the shaft angle before them."""
         middle = box[len(box) - len(self._sides) :].mean(axis=-1)
         return {side.key: float(value) for side, value in zip(self._sides, middle, strict=True)}
+
+    def _doubt(self, number: int) -> str:
+        """Return why a run does not show what is claimed: not that it is too near its bound."""
+        for _values, run in self._runs:
+            verdict = run.claims[number]
+            if not (verdict.decided or math.isfinite(verdict.error)):
+                return f"a run leaves it undecided: {verdict.note}"
+        return ""
 
     def _witness(
         self, number: int, runs: Iterable[tuple[dict[str, float], Evaluation]]
