@@ -52,6 +52,7 @@ pytestmark = [
     pytest.mark.skipif(find_spec("ziglang") is None, reason="ziglang is not installed: nothing is compiled"),
     pytest.mark.skipif(not sys.platform.startswith("linux"), reason="native FMUs are tested on Linux alone"),
 ]
+PROVEN = "proven for all shaft angles and speeds"  # from 382 to 620.7 rev/min
 NOT_THERE = "\u2013"  # as a value at the cursor
 BELT_IN_MOTION = """
 revolutions = 1
@@ -74,7 +75,8 @@ VALUES = """name => {
 @pytest.fixture(scope="session")
 def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     vary = ["shaft.speed=400rpm..800rpm", "belt.guide_clearance", "dobby.law"]
-    return live_page.write(DEMO, vary, tmp_path_factory.mktemp("page") / "demo.html")
+    proven = ({0: PROVEN}, {"shaft.speed": (40.0, 65.0)})
+    return live_page.write(DEMO, vary, tmp_path_factory.mktemp("page") / "demo.html", proven=proven)
 
 
 @pytest.fixture(scope="session")
@@ -356,6 +358,16 @@ def test_the_slider_past_the_safe_speed_turns_the_verdicts(page: Any) -> None:
     assert page.inner_text(".outcome").endswith("2 of 6 claims fail")
     page.locator("#live-knobs button[type=reset]").click()
     until(page, lambda: page.inner_text(".outcome").endswith("All 6 claims hold"))
+
+
+def test_a_proof_is_shown_where_it_counts(page: Any) -> None:
+    first = page.locator("#claims tbody tr").first
+    until(page, lambda: PROVEN in first.inner_text())
+    for speed, counts in ((620, True), (621, False), (500, True)):
+        turned(page, speed)
+        assert (PROVEN in first.inner_text()) == counts
+    turned(page, 0.29, 1)  # the clearance is none of the values that it is for
+    assert PROVEN not in first.inner_text()
 
 
 def test_on_paper_the_drawings_are_those_of_the_cursor(page: Any) -> None:

@@ -12,6 +12,7 @@ from ..display.printed import complain, say, warn
 from ..errors import LoomfmuError
 from .shared import (
     PLATFORM,
+    PROVE,
     SCENE,
     SCENE_FILE,
     SET,
@@ -23,6 +24,7 @@ from .shared import (
     pairs,
     platforms,
     print_verdicts,
+    proofs_of,
     revolutions,
     vary,
 )
@@ -46,6 +48,7 @@ if TYPE_CHECKING:
         flag("--native", argparse.SUPPRESS),  # which it does anyway
     ),
     flag("--report", "also write a page to look at, beside the trace"),
+    PROVE,
     flag("--explain", "report skipped FMUs, outputs and steps"),
     force("FILE.h5 even if it is not a trace"),
 )
@@ -68,8 +71,10 @@ def _run_here(options: argparse.Namespace) -> int:
     """Run a scene that was read, in this process, and print what came of it."""
     from ..cosim.run import run as run_scene
 
+    proofs = proofs_of(options.scene, options.prove)
     result = run_scene(
         options.scene,
+        remarks=None if proofs is None else proofs.remarks,
         output=options.output,
         progress=True,
         flavour="live" if options.live else "native",
@@ -193,6 +198,7 @@ def export(options: argparse.Namespace) -> int:
     argument(
         "--output", "FILE.html", "results/SCENE_page.html by default, with the values of --set in its name"
     ),
+    PROVE,
     force("FILE.html even if it is not such a page"),
 )
 def page(options: argparse.Namespace) -> int:
@@ -203,5 +209,7 @@ def page(options: argparse.Namespace) -> int:
         complain(f"warning: {warning}")
 
     given = pairs(options.overrides)
-    say(f"written: {write(options.scene, options.vary, options.output, given, options.force, warn)}")
+    proofs = proofs_of(options.scene, options.prove, given)
+    proven = ({}, {}) if proofs is None else (proofs.remarks, proofs.ranges)
+    say(f"written: {write(options.scene, options.vary, options.output, given, options.force, warn, proven)}")
     return 0

@@ -12,6 +12,7 @@ from ..display.printed import say
 from ..errors import LoomfmuError
 
 if TYPE_CHECKING:
+    from ..studies.proving.proofs import Proofs
     from ..traces import Verdict
 
 Action = Callable[[argparse.Namespace], int]
@@ -84,6 +85,13 @@ SET = argument(
     default=[],
     dest="overrides",
 )
+PROVE = argument(
+    "--prove",
+    "INSTANCE.VARIABLE=LOW..HIGH",
+    "also prove claims for all shaft angles and all values of a range, and note it with them (repeatable)",
+    action="append",
+    default=[],
+)
 PLATFORM = argument(
     "--platform", "NAME[,NAME]", "platforms of native FMUs: linux64,win64,darwin64; all by default"
 )
@@ -143,6 +151,15 @@ def platforms(options: argparse.Namespace) -> tuple[str, ...]:
 def revolutions(count: str) -> str:
     """A count of revolutions."""
     return f"{count} revolution" + "s" * (count != "1")
+
+
+def proofs_of(scene: Any, over: Sequence[str], given: dict[str, Any] | None = None) -> "Proofs | None":
+    """Return the proofs of a scene over ranges, or None where none is given."""
+    if not over:
+        return None
+    from ..studies.proving.prove import prove
+
+    return prove(scene, over=over, set=given)
 
 
 def print_verdicts(verdicts: "Sequence[Verdict]") -> None:

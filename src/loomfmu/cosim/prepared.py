@@ -13,6 +13,7 @@ from typing import Any, Literal, NamedTuple, get_args
 
 from ..errors import LoomfmuError, path_of, shown, suggestion
 from ..traces import Early, Recording, Signals, TraceWriter, Verdict
+from ..traces.verdict import remarked
 from . import accuracy
 from .claims import judging
 from .claims.claim import Claim
@@ -168,8 +169,16 @@ class Pattern:
     def _coarser(self, scene: Scene, grid: Grid) -> Coarser:
         return self._estimates.coarser(scene, grid, range(len(self._all)))
 
-    def run(self, scene: Scene, path: Path, flavour: str, overwrite: bool, progress: bool) -> Result:
-        """Run the scene, record it to a file, and judge its claims."""
+    def run(
+        self,
+        scene: Scene,
+        path: Path,
+        flavour: str,
+        overwrite: bool,
+        progress: bool,
+        remarks: Mapping[int, str],
+    ) -> Result:
+        """Run the scene, record it to a file, and judge its claims; `remarks` are added to their notes."""
         scene, coarser, chosen = self._with_steps(scene)
         needed = self._requested.needed(self._all, self._requested.recorded)
         signals = list(dict.fromkeys([*needed, *self._estimates.shown]))
@@ -198,7 +207,8 @@ class Pattern:
                     except KeyboardInterrupt:
                         raise Interrupted from None
             # third-party instances are still there: one that crashes when it is freed takes nothing with it
-            verdicts, trace = finish(partial(self._estimated, scene, coarser), writer, path, early)
+            judge = partial(self._estimated, scene, coarser)
+            verdicts, trace = finish(lambda trace: remarked(judge(trace), remarks), writer, path, early)
         return Result(
             scene,
             verdicts,
@@ -301,12 +311,13 @@ class Prepared:
         output: str | Path | None = None,
         progress: bool = False,
         overwrite: bool = False,
+        remarks: Mapping[int, str] | None = None,
     ) -> Result:
         """Run with these values, record and judge; as `loomfmu.run`."""
         with self._turn:
             pattern, scene = self._ready(set)
             path = own_path(scene, progress) if output is None else path_of(output, "output")
-            return pattern.run(scene, path, self._flavour, overwrite, progress)
+            return pattern.run(scene, path, self._flavour, overwrite, progress, remarks or {})
 
     def close(self) -> None:
         """Free the instances; a later run makes new ones."""

@@ -1,6 +1,6 @@
 """Running a scene: co-simulate, record, judge."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +18,7 @@ def run(
     progress: bool = False,
     flavour: Flavour = "native",
     overwrite: bool = False,
+    remarks: Mapping[int, str] | None = None,
 ) -> Result:
     """Co-simulate a scene, record it to HDF5 and judge its claims.
 
@@ -31,13 +32,14 @@ def run(
             standard error is a terminal
         flavour: "native" or "live" FMUs; live ones also where no native one is available, with a warning
         overwrite: replace a file at `output` that is not a trace
+        remarks: what else to note of claims, by their numbers counted from 0, such as `proofs.remarks`
 
     Raises:
         LoomfmuError: bad input, or an FMU that failed; one line that names what and where
         KeyboardInterrupt: Ctrl-C; what was written stays readable in a file that the message names
     """
     loom = prepare(scene, set=set, flavour=flavour)
-    return loom.run(output=output, progress=progress, overwrite=overwrite)
+    return loom.run(output=output, progress=progress, overwrite=overwrite, remarks=remarks)
 
 
 def evaluate(

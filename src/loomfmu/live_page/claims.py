@@ -2,7 +2,7 @@
 
 import math
 from base64 import b64encode
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -18,8 +18,12 @@ from ..fmi.native.sources import code_of
 from ..traces import Trace, Verdict
 from ..traces.plotting import curve_of
 
+Proven = tuple[Mapping[int, str], Mapping[str, tuple[float, float]]]
 
-def claims(scene: Scene, ends: Iterable[Scene], trace: Trace, verdicts: Sequence[Verdict]) -> dict[str, Any]:
+
+def claims(
+    scene: Scene, ends: Iterable[Scene], trace: Trace, verdicts: Sequence[Verdict], proven: Proven
+) -> dict[str, Any]:
     """Return the data with which the script judges: the rules, their signals, and a row for each claim.
 
     Args:
@@ -27,6 +31,7 @@ def claims(scene: Scene, ends: Iterable[Scene], trace: Trace, verdicts: Sequence
         ends: the scene with each value that is varied at either end of its range
         trace: the run that the page holds
         verdicts: those on that run
+        proven: what to say of claims that are proven, by their numbers, and the ranges in SI, by keys
     """
     table, requested = Table(), Requested(scene)
     number_of(table, trace, SHAFT_ANGLE)
@@ -36,7 +41,7 @@ def claims(scene: Scene, ends: Iterable[Scene], trace: Trace, verdicts: Sequence
     rows = [
         _claim(claim, method, verdict, trace, table)
         | {"unshown": next((each[number] for each in unshown if number in each), "")}
-        | {"counts": counts(trace, verdict)}
+        | {"counts": counts(trace, verdict), "proven": proven[0].get(number, "")}
         for number, (claim, method, verdict) in enumerate(asked)
     ]
     signals = [
@@ -44,7 +49,7 @@ def claims(scene: Scene, ends: Iterable[Scene], trace: Trace, verdicts: Sequence
     ]
     rules = standard().RULES
     wasm = b64encode(module_of(rules.name, code_of(rules))).decode()
-    about = {"fields": FIELDS, "signals": signals, "coarseness": coarseness(scene)}
+    about = {"proven": proven[1], "fields": FIELDS, "signals": signals, "coarseness": coarseness(scene)}
     return {"wasm": wasm, **about, "claims": rows}
 
 

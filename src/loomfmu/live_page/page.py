@@ -30,7 +30,7 @@ from ..report.document import PRINT, assembled, sections
 from ..report.section import Section, Subject
 from ..report.templates import template
 from ..traces import Trace
-from .claims import claims
+from .claims import Proven, claims
 from .knobs import Knob, ends_of, knobs
 
 MARK = "<!DOCTYPE html>\n<!-- a page of loomfmu -->\n"
@@ -47,6 +47,7 @@ def write(
     set: dict[str, Any] | None = None,
     overwrite: bool = False,
     warn: Callable[[str], object] = lambda _warning: None,
+    proven: Proven = ({}, {}),
 ) -> Path:
     """Write the page of a scene and return its path.
 
@@ -59,6 +60,7 @@ def write(
         set: values that differ from the scene's
         overwrite: also replace a file that is not such a page
         warn: called with each warning of the scene and of the ranges
+        proven: what to say of claims that are proven, by their numbers, and the ranges for which they are
 
     Raises:
         LoomfmuError: bad input, what cannot be compiled or varied, or the file cannot be written
@@ -77,7 +79,7 @@ def write(
         with started.trace as trace:
             subject = Subject([trace], live=True)
             data = _data(loaded, subject, rows, varied) | _stepping(whole, trace, rows)
-            data["judging"] = claims(loaded, ends_of(loaded, varied), trace, started.claims)
+            data["judging"] = claims(loaded, ends_of(loaded, varied), trace, started.claims, proven)
             data["wasm"] = b64encode(wasm).decode()
             controls = template("live.html.j2").render(knobs=varied)
             live = Section("live", "Values", controls, SCRIPTS, data)

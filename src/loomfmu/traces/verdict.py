@@ -1,8 +1,8 @@
 """The outcome of a claim: as text for people, and as a trace stores it."""
 
 import math
-from collections.abc import Iterable
-from dataclasses import MISSING, dataclass, field, fields
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import MISSING, dataclass, field, fields, replace
 from types import NoneType
 from typing import Any, Self
 
@@ -188,6 +188,12 @@ class Verdict:
             return cls(**known, display_unit=stored["display"]["unit"])
         # as version 0.1.0 stored them: SI values beside the unit that people read them in
         return cls(**(known | {"unit": units.si(known["unit"])}), display_unit=known["unit"])
+
+
+def remarked(verdicts: Sequence[Verdict], remarks: Mapping[int, str]) -> tuple[Verdict, ...]:
+    """Return verdicts with remarks on some of them, by their numbers counted from 0, after their notes."""
+    notes = (filter(None, (each.note, remarks.get(number))) for number, each in enumerate(verdicts))
+    return tuple(replace(each, note="; ".join(note)) for each, note in zip(verdicts, notes, strict=True))
 
 
 def place_text(time: float, angle: float, revolution: int | None) -> str:

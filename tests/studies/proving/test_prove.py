@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import loomfmu
+from loomfmu.cli import main
 from loomfmu.cosim.claims.conditions import FALLS, IN, OUT, RISES, UNKNOWN, Spans, Sum
 from loomfmu.cosim.scenes.scene import Scene, parse
 from loomfmu.errors import LoomfmuError
@@ -181,3 +182,16 @@ def test_values_that_are_set_stay_set_while_others_vary(loom: Scene) -> None:
     assert prove(loom, set=heavier, over=over, claims=["margin"]).claims[0].status == "proven"
     (found,) = prove(loom, set=heavier, over=["shaft.speed=500rpm..640rpm"], claims=["margin"]).claims
     assert found.status == "refuted"
+
+
+def test_a_run_notes_what_is_proven(
+    loom: Scene, tmp_path: Path, capsys: pytest.CaptureFixture[str], proofs: Proofs
+) -> None:
+    result = loomfmu.run(loom, output=tmp_path / "loom.h5", remarks=proofs.remarks)
+    text = "proven for all shaft angles and shaft.speed from 300 to 640 rev/min"
+    with result.trace as trace:
+        notes = [verdict.note for verdict in trace.verdicts]
+    assert [text in note for note in notes] == [bool(proof) for proof in proofs.claims]
+    (tmp_path / "loom.toml").write_text(loom.text)
+    assert main(["run", str(tmp_path / "loom.toml"), "--prove", "shaft.speed=300rpm..640rpm"]) == 0
+    assert text in " ".join(capsys.readouterr().out.split())

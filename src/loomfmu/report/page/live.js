@@ -202,5 +202,7 @@ loomfmu.live = (() => {
     if (differing().length) soon();
   });
   const changed = () => plan.knobs.flatMap((knob, number) => values[number] === knob.start ? [] : knob.targets);
-  return { plan, changed, follow: (part, listener) => { listeners.set(part, listener); }, get current() { return current; } };
+  /* Whether all values are those of the scene, or within ranges by their keys. */
+  const within = ranges => differing().every(([{ key }, value]) => key in ranges && ranges[key][0] <= value && value <= ranges[key][1]);
+  return { plan, changed, within, follow: (part, listener) => { listeners.set(part, listener); }, get current() { return current; } };
 })();

@@ -1,7 +1,7 @@
 /* The claims on a run, judged by the rules that judge every run, compiled from C: see cosim/claims/native. A verdict has the
  * worst value with its bound, time, error and note, and `holds`, which is null where the claim is undecided. Of the numerical
  * error the page knows at the scene's own values alone what other steps would change: elsewhere it takes more for it. */
-loomfmu.judge = ({ fields, signals, coarseness }, length, wasm) => {
+loomfmu.judge = ({ fields, signals, coarseness, proven }, length, wasm) => {
   const FAR_ABOVE = 10, NEAR = 1e-4; // times the error at the scene's own values; of the bound
   const NEAR_COUNT = 0.5; // of the bound: one event more may bring others with it
   const NOT_HERE = "loomfmu run judges it";
@@ -62,7 +62,8 @@ loomfmu.judge = ({ fields, signals, coarseness }, length, wasm) => {
     wasm.judge(judged, place, claim.said ??= text(claim.words), verdict);
     const first = found(), known = Number.isFinite(first.worst);
     const unsettled = native.unsettled && (own ? native.unsettled : `with the scene's own values ${native.unsettled}`);
-    const notes = [read(wasm.run_note(judged)), native.remark, unsettled];
+    const proof = loomfmu.live.within(proven) && claim.proven;
+    const notes = [read(wasm.run_note(judged)), native.remark, unsettled, proof];
     const settled = known && native.estimated ? settle(place, claim, first, spread, 0) : first;
     let far = settled;
     if (known && settled.decided && !own) {

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from ...cosim.claims.conditions import Condition
 from ...cosim.scenes.scene import Scene
 from ...declaring.variables import Component
+from ...errors import listed
 from ..span import Span
 from .cover import Cover
 
@@ -14,12 +15,14 @@ PROVEN, REFUTED, OPEN, IMPOSSIBLE = "proven", "refuted", "open", "cannot be prov
 
 @dataclass(frozen=True)
 class Proof:
-    """One claim over the box: its `status`, and why; `share` of the box is proven, by so many `boxes`.
+    """A claim, by its name and its number in the scene, over the box: its `status`, and why.
 
-    A claim that is refuted has the values of a `witness`, at which its run fails.
+    A `share` of the box is proven, by so many `boxes`. A claim that is refuted has the values of a
+    `witness`, at which its run fails.
     """
 
     claim: str
+    number: int
     status: str
     why: str = ""
     share: float = 0.0
@@ -44,6 +47,18 @@ class Proofs:
 
     def __bool__(self) -> bool:
         return bool(self.claims) and all(self.claims)
+
+    @property
+    def remarks(self) -> dict[int, str]:
+        """Return what to say of each claim that is proven, by its number in the scene."""
+        ranges = (f"{span.key} from {span.text}" for span in self.over)
+        text = f"proven for {listed(('all shaft angles', *ranges))}"
+        return {each.number: text for each in self.claims if each}
+
+    @property
+    def ranges(self) -> dict[str, tuple[float, float]]:
+        """Return the ends of the box in SI, by what varies."""
+        return {span.key: (span.low, span.high) for span in self.over}
 
     def __repr__(self) -> str:
         proven = f"{sum(map(bool, self.claims))} of {len(self.claims)} claims proven"

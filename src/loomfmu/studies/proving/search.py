@@ -43,24 +43,26 @@ class Search:
         try:
             conditions, chain = self._stated(number)
         except Unprovable as error:
-            return Proof(name, IMPOSSIBLE, str(error))
+            return Proof(name, number, IMPOSSIBLE, str(error))
         witness = self._witness(number, self._runs)
         if witness is not None:
-            return Proof(name, REFUTED, witness=witness)
+            return Proof(name, number, REFUTED, witness=witness)
         if doubt := self._doubt(number):
-            return Proof(name, IMPOSSIBLE, doubt)
+            return Proof(name, number, IMPOSSIBLE, doubt)
         covers = tuple((each, self._covers(each, chain)) for each in conditions)
         parts = [each for _condition, many in covers for each in many]
         share = math.prod(each.share for each in parts)
         boxes = sum(each.boxes for each in parts)
         left = [box for each in parts for box in each.open]
         if not left:
-            return Proof(name, PROVEN, "", 1.0, boxes, {}, covers, () if chain.timed else chain.components)
+            return Proof(
+                name, number, PROVEN, "", 1.0, boxes, {}, covers, () if chain.timed else chain.components
+            )
         places = (self._middle(box) for box in left[:: math.ceil(len(left) / LOOKED_AT)])
         witness = self._witness(number, map(self._run, places))
         if witness is not None:
-            return Proof(name, REFUTED, "", share, boxes, witness)
-        return Proof(name, OPEN, f"{len(left)} of {boxes} boxes are left", share, boxes)
+            return Proof(name, number, REFUTED, "", share, boxes, witness)
+        return Proof(name, number, OPEN, f"{len(left)} of {boxes} boxes are left", share, boxes)
 
     def lowest_distance(self, number: int, width: float) -> Ends | None:
         """Enclose the lowest distance of a claim from its bound, no wider than this.
