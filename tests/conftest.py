@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from browser import chromium, opened
+from browser import chromium, opened, tabs
 from compiled import belt_in_c
 from hypothesis import settings
 from sharing import KEPT, fmu_cache, native_fmus
@@ -17,7 +17,7 @@ from sharing import KEPT, fmu_cache, native_fmus
 from loomfmu.fmi.native.platforms import compiler
 
 # fixtures are named here alone: one that is imported into two files would be made twice in a process
-__all__ = ["belt_in_c", "chromium", "fmu_cache", "opened"]
+__all__ = ["belt_in_c", "chromium", "fmu_cache", "opened", "tabs"]
 
 collect_ignore_glob = ["*conftest.py"]  # they hold no doctests, and pytest takes them for one module
 
