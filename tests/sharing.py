@@ -18,6 +18,8 @@ from loomfmu.cache.entries import FMUS, made_file
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.importing import fmus
 from loomfmu.fmi.native.platforms import host
+from loomfmu.studies.fitting import measured
+from loomfmu.traces import Trace, damage
 
 KEPT = user_cache_path("loomfmu-tests", appauthor=False)
 
@@ -31,6 +33,18 @@ def fmu_cache() -> Iterator[None]:
     """
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("LOOMFMU_CACHE", str(KEPT))
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def traces_checked_here() -> Iterator[None]:
+    """Commands check traces in the process of the tests: one of its own takes a third of a second each time.
+
+    `tests/test_traces.py` tests the check in its own process.
+    """
+    with pytest.MonkeyPatch.context() as patch:
+        for module in (damage, measured):
+            patch.setattr(module, "check", lambda path: Trace(path).check())
         yield
 
 
