@@ -12,12 +12,12 @@ import pytest
 from browser import chromium, opened, tabs
 from compiled import belt_in_c
 from hypothesis import settings
-from sharing import KEPT, fmu_cache, native_fmus, traces_checked_here
+from sharing import KEPT, compiled_once, fmu_cache, native_fmus, traces_checked_here
 
 from loomfmu.fmi.native.platforms import compiler
 
 # fixtures are named here alone: one that is imported into two files would be made twice in a process
-__all__ = ["belt_in_c", "chromium", "fmu_cache", "opened", "tabs", "traces_checked_here"]
+__all__ = ["belt_in_c", "chromium", "compiled_once", "fmu_cache", "opened", "tabs", "traces_checked_here"]
 
 collect_ignore_glob = ["*conftest.py"]  # they hold no doctests, and pytest takes them for one module
 
