@@ -6,17 +6,18 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
+from typing import Any
 
 import pytest
-from browser import chromium, opened
+from browser import chromium, opened, tabs
 from compiled import belt_in_c
 from hypothesis import settings
-from sharing import KEPT, fmu_cache, native_fmus
+from sharing import KEPT, compiled_once, fmu_cache, native_fmus, traces_checked_here
 
 from loomfmu.fmi.native.platforms import compiler
 
 # fixtures are named here alone: one that is imported into two files would be made twice in a process
-__all__ = ["belt_in_c", "chromium", "fmu_cache", "opened"]
+__all__ = ["belt_in_c", "chromium", "compiled_once", "fmu_cache", "opened", "tabs", "traces_checked_here"]
 
 collect_ignore_glob = ["*conftest.py"]  # they hold no doctests, and pytest takes them for one module
 
@@ -24,7 +25,7 @@ collect_ignore_glob = ["*conftest.py"]  # they hold no doctests, and pytest take
 SAME = {"derandomize": True, "database": None, "deadline": None}
 settings.register_profile("quick", max_examples=25, **SAME)
 settings.register_profile("all", max_examples=100, **SAME)
-LEFT_OUT = "slow: run it with --all"
+LEFT_OUT = pytest.StashKey[dict[str, Any]]()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -76,21 +77,30 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     """Leave out slow tests unless they are asked for, and trace no coverage in what other tests cover."""
     leave_cases_to_the_slow(items)
     for item in items:
-        if item.get_closest_marker("slow") and not config.option.all and "slow" not in config.option.markexpr:
-            item.add_marker(pytest.mark.skip(reason=LEFT_OUT))
         if item.nodeid.startswith(UNTRACED):
             item.add_marker(pytest.mark.no_cover)
+    slow = [item for item in items if item.get_closest_marker("slow")]
+    if config.option.all or "slow" in config.option.markexpr or not slow:
+        return
+    # a report of each that is skipped would take as long as many tests
+    items[:] = [item for item in items if not item.get_closest_marker("slow")]
+    parents = (Path(item.nodeid.split("::")[0]).parent.parts for item in slow)
+    folders = Counter(parts[1] if len(parts) > 1 else "others" for parts in parents)
+    getattr(config, "workeroutput", config.stash.setdefault(LEFT_OUT, {})).update(left_out=dict(folders))
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node: Any) -> None:
+    """Take over how many slow tests a process left out: all leave out the same."""
+    node.config.stash.setdefault(LEFT_OUT, {}).update(getattr(node, "workeroutput", {}))
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
     """Say how many slow tests were left out, by folder."""
-    skipped = [each for each in terminalreporter.stats.get("skipped", ()) if LEFT_OUT in str(each.longrepr)]
-    parents = (Path(each.nodeid.split("::")[0]).parent.parts for each in skipped)
-    folders = Counter(parts[1] if len(parts) > 1 else "others" for parts in parents)
-    if folders:
+    if folders := Counter(terminalreporter.config.stash.get(LEFT_OUT, {}).get("left_out", {})):
         counts = ", ".join(f"{folder} {count}" for folder, count in folders.most_common())
         terminalreporter.write_line(
-            f"left out: {len(skipped)} slow tests ({counts}); make test-all runs them"
+            f"left out: {folders.total()} slow tests ({counts}); make test-all runs them"
         )
 
 

@@ -1,6 +1,7 @@
 """What all processes have in common that share the tests of one session."""
 
 import hashlib
+import os
 import platform
 import shutil
 import sys
@@ -8,6 +9,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from importlib.metadata import version
 from pathlib import Path
+from threading import get_ident
 
 import pytest
 from filelock import FileLock
@@ -17,9 +19,14 @@ from loomfmu.cache.directory import cache_directory
 from loomfmu.cache.entries import FMUS, made_file
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.importing import fmus
-from loomfmu.fmi.native.platforms import host
+from loomfmu.fmi.native import compiler
+from loomfmu.fmi.native.platforms import COMPILER, host, stamp
+from loomfmu.studies.fitting import measured
+from loomfmu.traces import Trace, damage
 
 KEPT = user_cache_path("loomfmu-tests", appauthor=False)
+CODE = (".c", ".cpp", ".h")
+CALL = compiler._call  # of the compiler itself
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -31,6 +38,44 @@ def fmu_cache() -> Iterator[None]:
     """
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("LOOMFMU_CACHE", str(KEPT))
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def traces_checked_here() -> Iterator[None]:
+    """Commands check traces in the process of the tests: one of its own takes a third of a second each time.
+
+    `tests/test_traces.py` tests the check in its own process.
+    """
+    with pytest.MonkeyPatch.context() as patch:
+        for module in (damage, measured):
+            patch.setattr(module, "check", lambda path: Trace(path).check())
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def compiled_once(fmu_cache: None) -> Iterator[None]:
+    """What the compiler makes of the same code is kept from run to run, whatever cache a test has.
+
+    Each call takes over a second, even if the compiler has kept what it makes.
+    """
+
+    def call(arguments: list[str], directory: Path, name: str) -> None:
+        compiler._required()
+        code = sorted((each.name, each.read_bytes()) for each in directory.iterdir() if each.suffix in CODE)
+        key = hashlib.sha256(repr((arguments, code, stamp(COMPILER))).encode()).hexdigest()
+        kept, output = KEPT / FMUS / key / "made", directory / arguments[arguments.index("-o") + 1]
+        if not kept.is_file():
+            CALL(arguments, directory, name)
+            kept.parent.mkdir(parents=True, exist_ok=True)
+            part = kept.with_name(f"{os.getpid()}-{get_ident()}")
+            part.write_bytes(output.read_bytes())
+            part.replace(kept)
+        os.utime(kept.parent)
+        output.write_bytes(kept.read_bytes())
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(compiler, "_call", call)
         yield
 
 

@@ -219,7 +219,7 @@ def test_what_takes_long_follows_and_says_so_meanwhile(
     written_whole: Path, opened: Open, tmp_path: Path
 ) -> None:
     """Nothing that is shown is of other values: the belts in motion wait, all else is there."""
-    page = opened(written_whole, (1200, 12000))  # all plots are in sight
+    page = opened(written_whole, (1200, 12000), alone=True)  # all plots are in sight
     # a clock that runs fast, so that the run takes long on any machine
     page.add_init_script("const now = performance.now.bind(performance); performance.now = () => 50 * now()")
     page.reload()
@@ -455,7 +455,7 @@ def test_what_is_out_of_sight_shows_the_same_place_and_run(page: Any, fast: Trac
 
 def test_before_its_first_run_the_page_shows_the_run_that_it_holds(written: Path, opened: Open) -> None:
     """A browser without WebAssembly: the drawings stay where their caption says, and no plot is empty."""
-    page = opened(written)
+    page = opened(written, alone=True)
     page.add_init_script("delete window.WebAssembly")
     page.reload()
     until(page, lambda: "cannot run here" in page.inner_text("#live-problem"))

@@ -10,6 +10,7 @@ from typing import Any
 import fmpy
 import numpy as np
 import pytest
+import sharing
 from foreign_motors import motor2
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -20,6 +21,7 @@ from loomfmu import LoomfmuError, Result, run
 from loomfmu.cosim import whole
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.scene import Scene
+from loomfmu.fmi.native import compiler
 
 SIMS = Path(__file__).parents[2] / "sims"
 SCENES = sorted([*SIMS.glob("*.toml"), *SIMS.glob("beyond_the_limit/*.toml")])
@@ -236,7 +238,8 @@ def test_only_what_its_outputs_need_is_in_it(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_the_same_scene_gives_the_same_bytes(tmp_path: Path) -> None:
+def test_the_same_scene_gives_the_same_bytes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(compiler, "_call", sharing.CALL)
     scene = loaded(SIMS / "belt_alone.toml")
     first = exported(scene, tmp_path).read_bytes()
     assert exported(scene, tmp_path).read_bytes() == first

@@ -328,7 +328,7 @@ def test_what_cannot_be_plotted_is_said(demo: Trace, tmp_path: Path) -> None:
 def test_the_last_tick_is_that_of_the_end_of_the_run(yarn: Trace, written: Written, opened: Open) -> None:
     """Two revolutions are 719.9999999999999 deg by rounding."""
     assert np.degrees(yarn.shaft_angle[-1]) < 720.0
-    page = opened(written(yarn))
+    page = opened(written(yarn), alone=True)
     page.add_init_script(
         "window.drawn = []; const { prototype } = CanvasRenderingContext2D, { fillText } = prototype;"
         "prototype.fillText = function (...given) { drawn.push(given[0]); fillText.apply(this, given); }"

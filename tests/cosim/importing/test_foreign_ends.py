@@ -96,8 +96,9 @@ def test_no_claim_holds_on_what_there_is_unless_the_scene_allows_an_end(
     assert again.word == word
 
 
-@pytest.mark.few(1)
-@pytest.mark.parametrize("claim", ["", CLAIM.format("motor.flange_w", 1e3)])
+@pytest.mark.parametrize(
+    "claim", ["", pytest.param(CLAIM.format("motor.flange_w", 1e3), marks=pytest.mark.slow)]
+)
 def test_evaluate_tells_it_too(ending: tuple[Path, str], claim: str) -> None:
     place, end = ending
     found = evaluate(scenes.parse(SECOND + claim, "m", directory=place))
@@ -132,7 +133,7 @@ def brief(tmp_path: Path) -> Path:
     return tmp_path
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "study",
     [

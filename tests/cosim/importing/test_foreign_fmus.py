@@ -321,6 +321,7 @@ def test_degrees_become_radians_on_a_wire(tmp_path: Path) -> None:
     assert weft.initialize(0.0) == 0 and weft.travel == pytest.approx(trace["weft.travel"][-1], rel=1e-13)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("unit", ["rad", "deg", "rev"])
 def test_a_claim_asks_for_steps_by_the_speed_of_a_shaft_in_any_unit(tmp_path: Path, unit: str) -> None:
     """Ten revolutions in a second, in steps of 36 deg: a sample is needed every 18 deg."""

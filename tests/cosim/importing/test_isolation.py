@@ -158,6 +158,7 @@ def test_one_that_fails_in_a_step_is_named_and_the_trace_kept(tmp_path: Path, wh
         np.testing.assert_allclose(trace["motor.flange_phi"], exact(trace.time)[0], rtol=0, atol=1e-12)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("what", ["CRASH", "HANG", "EXIT"])
 def test_one_that_fails_in_initialization_is_named(tmp_path: Path, what: str) -> None:
     misbehaving(tmp_path, what, "INITIALIZATION")
@@ -166,7 +167,7 @@ def test_one_that_fails_in_initialization_is_named(tmp_path: Path, what: str) ->
         ran(tmp_path, MOTOR, tmp_path, step_timeout="0.5 s")
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("where", ["TERMINATE", "FREE"])
 @pytest.mark.parametrize("what", ["CRASH", "HANG", "EXIT"])
 def test_what_fails_after_the_last_step_costs_nothing(tmp_path: Path, what: str, where: str) -> None:
@@ -308,7 +309,7 @@ def content(path: Path) -> str:
 IN_THIS_PROCESS = "isolated = false\n" + MOTOR
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("where", ["INITIALIZATION", "STEP", "TERMINATE", "FREE"])
 @pytest.mark.parametrize(
     ("what", "how"),
@@ -340,39 +341,39 @@ def test_exit_in_a_script_is_a_failure(tmp_path: Path) -> None:
     assert not (tmp_path / "results" / "motor.h5").exists()
 
 
-def test_a_run_in_a_child_process_is_like_any_other(tmp_path: Path) -> None:
+@pytest.mark.parametrize(("bound", "status"), [(100.0, 0), pytest.param(1.0, 1, marks=pytest.mark.slow)])
+def test_a_run_in_a_child_process_is_like_any_other(tmp_path: Path, bound: float, status: int) -> None:
     motor2(tmp_path)
-    for bound, status in ((100.0, 0), (1.0, 1)):
-        claim = f'[[claims]]\nkind = "below"\nsignal = "motor.flange_w"\nbound = {bound}\n'
-        done = [
-            python(
-                tmp_path,
-                MOTOR + claim,
-                *RUN,
-                "--set",
-                f"isolated={isolated}",
-                "--output",
-                f"{bound}_{isolated}.h5",
-            )
-            for isolated in ("true", "false")
-        ]
-        assert [each.returncode for each in done] == [status, 1], done[1].stderr
-        printed = [
-            [line for line in each.stdout.splitlines() if "us each" not in line and "trace: " not in line]
-            for each in done
-        ]
-        words = [
-            " ".join(" ".join(lines).split()).replace(f"motor; isolated = {isolated}:", "motor:")
-            for lines, isolated in zip(printed, ("true", "false"), strict=True)
-        ]
-        # errors take further runs, which an FMU in this process could spoil, and nothing holds without
-        (known, _, note), (unknown, _, why) = (line.partition(" highest value ") for line in words)
-        assert known.split()[-1] == ("holds" if status == 0 else "FAILS")
-        assert unknown.split()[-1] == ("undecided" if status == 0 else "FAILS")
-        assert note.partition(",")[0] == why.partition(",")[0]
-        assert "(motor may do more within a step than it shows at its ends)" in note
-        assert "(numerical error not estimated: motor runs in this process; set isolated = true)" in why
-        assert done[0].stderr == done[1].stderr == ""
+    claim = f'[[claims]]\nkind = "below"\nsignal = "motor.flange_w"\nbound = {bound}\n'
+    done = [
+        python(
+            tmp_path,
+            MOTOR + claim,
+            *RUN,
+            "--set",
+            f"isolated={isolated}",
+            "--output",
+            f"{bound}_{isolated}.h5",
+        )
+        for isolated in ("true", "false")
+    ]
+    assert [each.returncode for each in done] == [status, 1], done[1].stderr
+    printed = [
+        [line for line in each.stdout.splitlines() if "us each" not in line and "trace: " not in line]
+        for each in done
+    ]
+    words = [
+        " ".join(" ".join(lines).split()).replace(f"motor; isolated = {isolated}:", "motor:")
+        for lines, isolated in zip(printed, ("true", "false"), strict=True)
+    ]
+    # errors take further runs, which an FMU in this process could spoil, and nothing holds without
+    (known, _, note), (unknown, _, why) = (line.partition(" highest value ") for line in words)
+    assert known.split()[-1] == ("holds" if status == 0 else "FAILS")
+    assert unknown.split()[-1] == ("undecided" if status == 0 else "FAILS")
+    assert note.partition(",")[0] == why.partition(",")[0]
+    assert "(motor may do more within a step than it shows at its ends)" in note
+    assert "(numerical error not estimated: motor runs in this process; set isolated = true)" in why
+    assert done[0].stderr == done[1].stderr == ""
 
 
 def test_the_second_ctrl_c_ends_a_run_whose_fmu_hangs(tmp_path: Path) -> None:
@@ -421,7 +422,7 @@ def test_a_changed_rounding_is_changed_back_before_others_compute(
     np.testing.assert_array_equal(*found)
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("where", ["STEP", "INITIALIZATION"])
 @pytest.mark.parametrize("text", [MOTOR, IN_THIS_PROCESS])
 def test_of_a_process_that_an_fmu_has_forked_one_goes_on(tmp_path: Path, text: str, where: str) -> None:

@@ -3,7 +3,11 @@
 from pathlib import Path
 from typing import Any
 
+import pytest
+from matplotlib.figure import Figure
+
 from loomfmu import Optimum, optimize
+from loomfmu.studies.optimizing import best_design
 
 SIMS = Path(__file__).parents[3] / "sims"
 DEMO = SIMS / "wl680_3600.toml"
@@ -21,5 +25,7 @@ def study(text: str, scene: Path = DEMO, head: str = FAST) -> Path:
 
 
 def searched(text: str, scene: Path = DEMO, head: str = FAST + QUICK, **how: Any) -> Optimum:
-    """The best design of a study, searched in this process."""
-    return optimize(study(text, scene, head), **{"processes": 1} | how)
+    """The best design of a study, searched in this process; drawing its picture takes half a second."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(best_design, "draw", lambda *_given: Figure())
+        return optimize(study(text, scene, head), **{"processes": 1} | how)
