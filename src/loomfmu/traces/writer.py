@@ -101,11 +101,11 @@ class TraceWriter:
         shown = {"NX_class": "NXroot", "default": self.channels[0].instance} if self.channels else {}
         annotate(file, {**first, **shown, **attributes, "status": "running"})
         time = dataset(file, "time", REALS, rows)
-        annotate(time, {**about("s", "time", "Time since the start of the run"), "standard_name": "time"})
+        annotate(time, {**about("s", "Time since the start of the run"), "standard_name": "time"})
         time.make_scale("time")
         angle = dataset(file, "shaft_angle", REALS, rows)
-        turned = about("rad", "shaft angle", "Angle of the main shaft, not wrapped")
-        annotate(angle, {**turned, "DISPLAY_UNIT": "deg"})
+        turned = about("rad", "Angle of the main shaft, not wrapped")
+        annotate(angle, {**turned, "long_name": "shaft angle", "DISPLAY_UNIT": "deg"})
         angle.dims[0].attach_scale(time)
         found: dict[str, Any] = {}
         datasets = []
