@@ -469,6 +469,27 @@ def test_samples_that_come_in_pieces_are_kept_in_place(tmp_path: Path) -> None:
     assert trace.path.stat().st_size < 3 * ROWS * 28 + 50_000
 
 
+def test_time_is_never_longer_than_a_signal(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Readers of netCDF take the length of a live or killed run from it, and give zeros beyond a signal's."""
+    channels = [Channel("a", "x", "m", "m", "X", 0), Channel("a", "n", "1", "1", "N", 0, real=False)]
+    copy, lengths = tmp_path / "copy.h5", set()
+
+    def flush(columns: Any) -> None:
+        for dataset in columns._datasets:
+            dataset.id.flush()
+            shutil.copy(writer.partial, copy)  # what a kill leaves
+            with h5py.File(copy, swmr=True) as file:
+                names = ("time", "shaft_angle", "a/x", "a/n")
+                lengths.add(tuple(len(file[name]) for name in names))
+
+    monkeypatch.setattr("loomfmu.traces.chunks.Columns.flush", flush)
+    writer = TraceWriter(tmp_path / "run.h5", {"title": "t"}, channels, {})
+    for _ in range(2):
+        append(writer, np.arange(100.0), np.zeros((100, 1), dtype="i4"))
+    writer.complete([])
+    assert len(lengths) > 4 and all(found[0] == min(found) for found in lengths)
+
+
 def test_writers_of_one_output_do_not_meet(tmp_path: Path) -> None:
     path = tmp_path / "run.h5"
     writers = [TraceWriter(path, {"title": f"run {n}"}, [], {}) for n in range(3)]
