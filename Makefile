@@ -74,10 +74,12 @@ validation: .venv/installed-for-tests
 # a package that brings native FMUs and its other libraries for all platforms: who installs it needs no compiler;
 # built in a copy, since what an interrupted build leaves in src would be run
 wheel: .venv/installed
+	@echo "building the package: native FMUs and libraries for Linux, Windows and macOS, which takes up to ten minutes"
 	rm -rf $(COPY) && mkdir -p $(COPY)
 	cp -R $(PACKAGED) $(COPY)
 	$(BIN)/python -c "from loomfmu.commit import commit; print(commit())" > $(COPY)/src/loomfmu/commit.txt
 	PYTHONPATH=$(COPY)/src $(BIN)/python -c "from loomfmu.fmi.shipping import build_all; build_all()"
+	@echo "packing it into dist"
 	$(PIP) wheel --no-deps --no-build-isolation --wheel-dir dist $(COPY)
 	rm -r $(COPY)
 

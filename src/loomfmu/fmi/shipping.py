@@ -9,6 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 
 from ..components import COMPONENTS
+from ..display.progress import progress
 from ..files import replace_file
 from . import identities
 from .native import libraries
@@ -20,11 +21,11 @@ from .native.platforms import PLATFORMS, SHIPPED
 def build_all(platforms: tuple[str, ...] = tuple(PLATFORMS)) -> None:
     """Build the native FMUs of both versions, and the libraries, into the package. Raises LoomfmuError."""
     shutil.rmtree(SHIPPED, ignore_errors=True)
-    with ThreadPoolExecutor() as pool:
+    with progress("native FMUs", 2 * len(COMPONENTS)) as advance, ThreadPoolExecutor() as pool:
         for fmi in (2, 3):
             build = partial(build_native, directory=SHIPPED / f"fmi{fmi}", platforms=platforms, fmi=fmi)
-            built = pool.map(build, COMPONENTS)
-            list(built)
+            for _ in pool.map(build, COMPONENTS):
+                advance(1)
     libraries.build_all(sorted(identities.PACKAGE.glob("**/native/*.c")), platforms)
     replace_file(SHIPPED / MINGW, mingw_licence())
     identities.write(SHIPPED)

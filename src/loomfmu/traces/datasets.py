@@ -64,10 +64,9 @@ def dataset(
     return xarray.Dataset(variables, coordinates)
 
 
-def attributes(signal: str, unit: str, description: str) -> dict[str, str]:
+def attributes(unit: str, description: str) -> dict[str, str]:
     """The attributes of a signal that xarray itself reads from the file of a trace."""
-    long_name = signal.partition(".")[2].replace("_", " ")
-    about = {"UNIT": unit, "units": units.udunits(unit), "long_name": long_name}
+    about = {"UNIT": unit, "units": units.udunits(unit)}
     return about | ({"COMMENT": description} if description else {})
 
 

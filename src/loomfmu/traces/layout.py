@@ -53,14 +53,17 @@ def legible(name: str, value: Any) -> Any:
     return value.item() if isinstance(value, np.generic) else value
 
 
-def about(unit: str, long_name: str, comment: str) -> dict[str, str]:
-    """The attributes that every dataset has."""
-    return {"UNIT": unit, "units": units.udunits(unit), "long_name": long_name, "COMMENT": comment}
+def about(unit: str, comment: str) -> dict[str, str]:
+    """The attributes that every dataset has.
+
+    There is no `long_name`: silx and h5web would label an axis with it instead of the name and the unit.
+    """
+    return {"UNIT": unit, "units": units.udunits(unit), "COMMENT": comment}
 
 
 def about_channel(channel: Channel) -> dict[str, Any]:
     """The attributes of a channel's dataset, of which `channel_of` reads what matters."""
-    said: dict[str, Any] = about(channel.unit, channel.variable.replace("_", " "), channel.description)
+    said: dict[str, Any] = about(channel.unit, channel.description)
     # a coordinate by CF: as a second scale of HDF5, xarray would take it for the dimension
     said["coordinates"] = "shaft_angle"
     if channel.boolean:

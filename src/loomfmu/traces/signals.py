@@ -213,7 +213,7 @@ class Signals(ABC):
                 raise LoomfmuError(f"{shown(name)} is not the name of a signal such as 'belt.margin'")
 
         columns = {
-            name: (self.read(name), attributes(name, self.unit(name), self.description(name)))
+            name: (self.read(name), attributes(self.unit(name), self.description(name)))
             for name in signals or tuple(self)
         }
         return dataset(self.name, self.time, self.shaft_angle, columns, fold)

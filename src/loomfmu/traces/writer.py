@@ -90,7 +90,7 @@ class TraceWriter:
     def _create(
         self, attributes: Mapping[str, Any], groups: Mapping[str, Mapping[str, Any]], rows: int
     ) -> tuple[list[Any], list[Any]]:
-        """Everything in the file but samples; the datasets of time and angle, and those of the channels.
+        """Everything in the file but samples; the datasets of angle and time, and those of the channels.
 
         They stay open: opened again while readers may join, HDF5 loses its place among thousands.
         """
@@ -101,11 +101,11 @@ class TraceWriter:
         shown = {"NX_class": "NXroot", "default": self.channels[0].instance} if self.channels else {}
         annotate(file, {**first, **shown, **attributes, "status": "running"})
         time = dataset(file, "time", REALS, rows)
-        annotate(time, {**about("s", "time", "Time since the start of the run"), "standard_name": "time"})
+        annotate(time, {**about("s", "Time since the start of the run"), "standard_name": "time"})
         time.make_scale("time")
         angle = dataset(file, "shaft_angle", REALS, rows)
-        turned = about("rad", "shaft angle", "Angle of the main shaft, not wrapped")
-        annotate(angle, {**turned, "DISPLAY_UNIT": "deg"})
+        turned = about("rad", "Angle of the main shaft, not wrapped")
+        annotate(angle, {**turned, "long_name": "shaft angle", "DISPLAY_UNIT": "deg"})
         angle.dims[0].attach_scale(time)
         found: dict[str, Any] = {}
         datasets = []
@@ -127,7 +127,7 @@ class TraceWriter:
             datasets.append(made)
         for instance in groups.keys() - found.keys():
             annotate(file.create_group(instance), groups[instance])
-        return [time, angle], datasets
+        return [angle, time], datasets
 
     def _chosen(self, datasets: Sequence[Any], kind: str, rows: int) -> tuple[Columns, list[int]]:
         """The datasets of one kind of channels, and the columns that go into them."""
@@ -143,11 +143,11 @@ class TraceWriter:
         """Write a block: values along the rows, signals along the columns."""
         reserve(self._file.id.get_vfd_handle(), self._file.id.get_filesize() + self._block)
         self.rows += len(time)
-        self._shared.append(np.stack([time, angle]))
+        self._shared.append(np.stack([angle, time]))
         self._reals.append(np.ascontiguousarray(reals.T[self._real_columns]))
         self._integers.append(np.ascontiguousarray(integers.T[self._integer_columns]))
-        for columns in (self._shared, self._reals, self._integers):
-            columns.flush()
+        for columns in (self._reals, self._integers, self._shared):  # time last: where it is the longer one,
+            columns.flush()  # h5netcdf follows the samples of a signal by zeros, and netCDF4 gives up
         self._file.flush()
 
     def seal(self) -> None:
