@@ -449,7 +449,7 @@ def test_before_its_first_run_the_page_shows_the_run_that_it_holds(written: Path
     until(page, lambda: "cannot run here" in page.inner_text("#live-problem"))
     assert page.inner_text("#motion-place").startswith("rev. 1, 137.0°")
     assert page.locator("#motion-drive-weft [data-value]").first.inner_text() != "0.0"
-    assert page.locator("#motion.stale").count() == 0
+    assert page.locator(".motion.stale").count() == 0
     assert page.locator("#plots-drawn").is_hidden()
     assert page.inner_text("#provenance h2") == "The scene\u2019s own run"
     assert "The sliders do not change this section" in page.inner_text("#provenance")
