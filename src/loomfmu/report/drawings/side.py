@@ -173,7 +173,7 @@ def _section(tracks: Tracks, shed: Shed) -> Figure:
 
 
 def _notes(shed: Shed) -> str:
-    """What is assumed in the section."""
+    """Return the assumptions of the section."""
     found = [
         "The model has the eyes of all frames at the distance of the first; the frames are drawn behind one"
         f" another. Heights of healds and frames{' and of the reed' * bool(shed.reed)} are assumed."
@@ -280,7 +280,7 @@ def _frame(sketch: Sketch, shed: Shed, frame: Frame, x: float) -> None:
 
 
 def boarded(shed: Shed) -> bool:
-    """Whether the reed gets behind the head, so that the race board reaches to below it."""
+    """Return whether the reed gets behind the head: then the race board reaches to below it."""
     return bool(shed.reed and shed.tip) and shed.behind[0] > shed.station + HEAD
 
 
