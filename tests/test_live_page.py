@@ -228,7 +228,7 @@ def test_what_takes_long_follows_and_says_so_meanwhile(
         loomfmu.live.follow("test", run => setTimeout(() => shown.push({
             waits: Object.keys(loomfmu.live.plan.reaches).filter(run.waits),
             verdicts: loomfmu.live.verdicts.map(({ holds, waits = false }) => [holds, waits]),
-            words: words("#claims tbody td:first-child"), outcome: words("#claims .outcome")[0],
+            words: words("#claims tbody td:first-child"), outcome: words(".outcome")[0],
             faded: words("#motion figure.stale .waits"), plots: words("#plots figcaption"),
         })))
     }""")

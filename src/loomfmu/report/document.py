@@ -8,6 +8,7 @@ from typing import Any
 from ..errors import LoomfmuError
 from ..files import check_target, short_stem, starts_with, write_file
 from ..traces import Comparison, Trace
+from .claims import outcomes
 from .claims import section as claims
 from .diagram import section as diagram
 from .drawings import sections as drawings
@@ -86,8 +87,12 @@ def assembled(
     """
     trace, several = subject.trace, len(subject.traces) > 1
     runs = [
-        {"heading": (f"{label}: " if several else "") + (heading or each.heading), "origin": each.origin}
-        for label, each in zip(labels(subject.traces), subject.traces, strict=True)
+        {
+            "heading": (f"{judged['label']}: " if several else "") + (heading or each.heading),
+            "origin": each.origin,
+        }
+        | judged
+        for judged, each in zip(outcomes(subject), subject.traces, strict=True)
     ]
     body: str = template("page.html.j2").render(
         runs=runs,
