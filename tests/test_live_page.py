@@ -23,6 +23,7 @@ from loomfmu.fmi.native import compiler
 from loomfmu.report import diagram
 from loomfmu.report.occasions import Occasions
 from loomfmu.report.section import Subject
+from loomfmu.studies.limits.marks import marks
 from loomfmu.traces import Trace
 
 Open = Callable[..., Any]
@@ -74,7 +75,7 @@ VALUES = """name => {
 @pytest.fixture(scope="session")
 def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     vary = ["shaft.speed=400rpm..800rpm", "belt.guide_clearance", "dobby.law"]
-    return live_page.write(DEMO, vary, tmp_path_factory.mktemp("page") / "demo.html")
+    return live_page.write(DEMO, vary, tmp_path_factory.mktemp("page") / "demo.html", marks=marks)
 
 
 @pytest.fixture(scope="session")
@@ -396,6 +397,22 @@ def test_an_address_carries_values_which_are_copied_as_command_and_scene(written
     assert command[-4:] == ["--set", "shaft.speed=690 rev/min", "--set", "dobby.law=harmonic_ends"]
     scene = tomllib.loads(copied["scene"].removeprefix("copied:\n"))
     assert scene == {"shaft": {"speed": "690 rev/min"}, "dobby": {"law": "harmonic_ends"}}
+
+
+def test_sliders_show_where_the_claims_hold(page: Any) -> None:
+    limits = page.locator(".knob .limits")
+    assert limits.count() == 2  # a list of choices has none
+    assert "the belt keeps a margin of 10 %: holds up to 646.8164 rev/min" in limits.first.inner_text()
+    assert "All claims hold" in limits.last.inner_text()
+    (held,) = limits.first.locator("i").all()
+    assert re.findall(r"[\d.]+(?=%)", held.get_attribute("style")) == [
+        "0.000",
+        "61.704",
+    ]  # (646.8164 - 400) / 400
+    turned(page, 0.33, 1)  # limits of the speed are those of the scene's clearance
+    assert limits.first.is_hidden() and limits.last.is_visible()
+    turned(page, 0.3, 1)
+    assert limits.first.is_visible()
 
 
 def test_drawings_and_plots_follow_the_run(page: Any, fast: Trace) -> None:

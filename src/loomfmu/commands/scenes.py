@@ -193,15 +193,18 @@ def export(options: argparse.Namespace) -> int:
     argument(
         "--output", "FILE.html", "results/SCENE_page.html by default, with the values of --set in its name"
     ),
+    flag("--limits", "mark on each slider where the claims hold; this takes some 50 runs for each"),
     force("FILE.html even if it is not such a page"),
 )
 def page(options: argparse.Namespace) -> int:
     """Write a scene as a page in which its FMUs run (HTML)."""
     from ..live_page import write
+    from ..studies.limits.marks import marks
 
     def warn(warning: str) -> None:
         complain(f"warning: {warning}")
 
     given = pairs(options.overrides)
-    say(f"written: {write(options.scene, options.vary, options.output, given, options.force, warn)}")
+    marked = marks if options.limits else None
+    say(f"written: {write(options.scene, options.vary, options.output, given, options.force, warn, marked)}")
     return 0
