@@ -23,6 +23,7 @@ from loomfmu.fmi.native import compiler
 from loomfmu.report import diagram
 from loomfmu.report.occasions import Occasions
 from loomfmu.report.section import Subject
+from loomfmu.studies.limits.marks import marks
 from loomfmu.traces import Trace
 
 Open = Callable[..., Any]
@@ -75,8 +76,9 @@ VALUES = """name => {
 @pytest.fixture(scope="session")
 def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     vary = ["shaft.speed=400rpm..800rpm", "belt.guide_clearance", "dobby.law"]
+    output = tmp_path_factory.mktemp("page") / "demo.html"
     proven = ({0: PROVEN}, {"shaft.speed": (40.0, 65.0)})
-    return live_page.write(DEMO, vary, tmp_path_factory.mktemp("page") / "demo.html", proven=proven)
+    return live_page.write(DEMO, vary, output, proven=proven, marks=marks)
 
 
 @pytest.fixture(scope="session")
@@ -230,7 +232,7 @@ def test_what_takes_long_follows_and_says_so_meanwhile(
         loomfmu.live.follow("test", run => setTimeout(() => shown.push({
             waits: Object.keys(loomfmu.live.plan.reaches).filter(run.waits),
             verdicts: loomfmu.live.verdicts.map(({ holds, waits = false }) => [holds, waits]),
-            words: words("#claims tbody td:first-child"), outcome: words("#claims .outcome")[0],
+            words: words("#claims tbody td:first-child"), outcome: words(".outcome")[0],
             faded: words("#motion figure.stale .waits"), plots: words("#plots figcaption"),
         })))
     }""")
@@ -410,6 +412,22 @@ def test_an_address_carries_values_which_are_copied_as_command_and_scene(written
     assert scene == {"shaft": {"speed": "690 rev/min"}, "dobby": {"law": "harmonic_ends"}}
 
 
+def test_sliders_show_where_the_claims_hold(page: Any) -> None:
+    limits = page.locator(".knob .limits")
+    assert limits.count() == 2  # a list of choices has none
+    assert "the belt keeps a margin of 10 %: holds up to 646.8164 rev/min" in limits.first.inner_text()
+    assert "All claims hold" in limits.last.inner_text()
+    (held,) = limits.first.locator("i").all()
+    assert re.findall(r"[\d.]+(?=%)", held.get_attribute("style")) == [
+        "0.000",
+        "61.704",
+    ]  # (646.8164 - 400) / 400
+    turned(page, 0.33, 1)  # limits of the speed are those of the scene's clearance
+    assert limits.first.is_hidden() and limits.last.is_visible()
+    turned(page, 0.3, 1)
+    assert limits.first.is_visible()
+
+
 def test_drawings_and_plots_follow_the_run(page: Any, fast: Trace) -> None:
     """The belt buckles at 700 rev/min, not in the run that the page was written with."""
     turned(page, 700.0)
@@ -461,7 +479,7 @@ def test_before_its_first_run_the_page_shows_the_run_that_it_holds(written: Path
     until(page, lambda: "cannot run here" in page.inner_text("#live-problem"))
     assert page.inner_text("#motion-place").startswith("rev. 1, 137.0°")
     assert page.locator("#motion-drive-weft [data-value]").first.inner_text() != "0.0"
-    assert page.locator("#motion.stale").count() == 0
+    assert page.locator(".motion.stale").count() == 0
     assert page.locator("#plots-drawn").is_hidden()
     assert page.inner_text("#provenance h2") == "The scene\u2019s own run"
     assert "The sliders do not change this section" in page.inner_text("#provenance")

@@ -4,6 +4,7 @@ import json
 import math
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,7 @@ from loomfmu.components.reed_beat_up import ReedBeatUp
 from loomfmu.components.weft_insertion import WeftInsertion
 from loomfmu.cosim.scenes import scene
 from loomfmu.physics.belt import complete_elliptic, elastica_deflection
-from loomfmu.report.drawings import section
+from loomfmu.report.drawings import sections
 from loomfmu.report.drawings.belt import elastica, half_slope
 from loomfmu.report.drawings.drive import BALL, planar, spherical
 from loomfmu.report.drawings.reed import joints
@@ -39,9 +40,9 @@ def pages(whole: Trace, fast: Trace, written: Callable[..., Path]) -> dict[str, 
 
 
 def made(trace: Trace) -> Section:
-    found = section(Subject([trace]))
-    assert found is not None
-    return found
+    """All drawings of a trace as one section."""
+    *whole, details = sections(Subject([trace]))
+    return replace(details, html="".join(each.html for each in (*whole, details)))
 
 
 def seek(page: Any, degrees: float) -> None:
@@ -125,6 +126,52 @@ def test_frames_and_carriers_are_at_their_recorded_places(
             assert y == pytest.approx(there, abs=0.03)
 
 
+def test_the_head_has_the_room_that_its_claim_judges(
+    whole: Trace, pages: dict[str, Path], opened: Open
+) -> None:
+    page = opened(pages["whole"])
+    (judged,) = (each for each in whole.verdicts if "room in the shed" in each.claim)
+    seek(page, math.degrees(Subject([whole]).position(judged) or 0.0))
+    eyes = []
+    for n in range(4):
+        _fell, eye, *_back = points(page, "side", "sheet", n)
+        carrier = np.interp(judged.time, whole.time, whole[f"damper_{n + 1}.carrier_lift"])
+        assert eye == pytest.approx((-250.0, 1000.0 * carrier - 49.0), abs=0.03)
+        eyes.append(abs(eye[1]))
+    # the worst value lies between samples, and may lie in the degree in which the head enters
+    worst = pytest.approx(1000.0 * judged.worst, abs=0.1)
+    assert 2.0 * 0.35 * min(eyes) == worst
+    shown = [each.inner_text() for each in page.locator("#motion-shed output[data-value]").all()]
+    assert [float(each) for each in shown] == [
+        worst,
+        worst,
+        pytest.approx(1000.0 * judged.worst - 17.0, abs=0.1),
+    ]
+
+
+def test_the_belt_leaves_its_wheel_at_the_height_of_its_guide(pages: dict[str, Path], opened: Open) -> None:
+    belts = opened(pages["whole"]).locator("#motion-front-transfer .belt")
+    wheel, way = (
+        belts.nth(place).bounding_box() for place in range(2)
+    )  # wound on it, and from there to the head
+    assert wheel["y"] + wheel["height"] == pytest.approx(way["y"] + way["height"], abs=0.5)  # px
+    assert wheel["x"] + wheel["width"] == pytest.approx(way["x"], abs=4.0)  # half a line's width each
+
+
+def test_the_belt_in_motion_bends_where_the_trace_has_it(
+    whole: Trace, pages: dict[str, Path], opened: Open
+) -> None:
+    page = opened(pages["whole"])
+    for degrees in (105.0, 120.0, 230.0):
+        seek(page, 1080.0 + degrees)
+        text = page.locator("#motion-belt-belt_motion g[data-stretch]").first.get_attribute("transform")
+        _x, _y, place, bend = (float(word) for word in re.findall(r"-?[\d.]+", text))
+        at = int(np.searchsorted(whole.shaft_angle, math.radians(1080.0 + degrees)))
+        for drawn, signal in ((place, "deflection_place"), (bend, "deflection")):
+            near = 1000.0 * whole[f"belt_motion.{signal}"][at - 5 : at + 6]  # keyframes are one a degree
+            assert near.min() - STEP <= drawn <= near.max() + STEP
+
+
 # ---- the weft
 
 
@@ -169,7 +216,7 @@ def test_numbers_of_heads_with_buckled_belts_fit_their_overlap(tmp_path: Path, o
     page = opened(report.write([trace], tmp_path / "late.html"))
     idle = [trace.parameter(f"{each}.idle_travel") for each in PAIR]
     apart = 1000.0 * (trace.parameter("transfer.separation") - sum(idle))
-    shown = page.locator("#motion-rapiers-transfer output[data-value]")
+    shown = page.locator("#motion-front-transfer output[data-value]")
     assert float(np.max(trace["belt.deflection"])) > 1e-3
     worst = int(np.argmax(trace["belt.deflection"]))
     page.evaluate(f"loomfmu.seek({float(trace.shaft_angle[worst])!r})")
@@ -177,9 +224,9 @@ def test_numbers_of_heads_with_buckled_belts_fit_their_overlap(tmp_path: Path, o
     # as in the test of the overlap, of which the two shown lengths have a digit each
     recorded = 1000.0 * trace["transfer.overlap"][worst]
     assert sum(within) - apart == pytest.approx(recorded, abs=0.1 + 2.0 * STEP + 0.1)
-    for figure in ("rapiers", "transfer"):
+    for figure in ("front", "transfer"):
         assert "of straight belts" in page.inner_text(f"#motion-{figure}-transfer")
-    assert "giver's head into the shed" in page.inner_text("#motion-rapiers-transfer")
+    assert "giver's head into the shed" in page.inner_text("#motion-front-transfer")
 
 
 # ---- the buckled belt
@@ -225,7 +272,7 @@ def test_only_what_the_trace_records_is_drawn(demo: Trace, tmp_path: Path) -> No
     assert "reed" not in made(demo).html
     trace = loomfmu.run(SIMS / "spline_cam.toml", output=tmp_path / "cam.h5").trace
     figures = re.findall(r'<figure id="motion-([^"]+)"', made(trace).html)
-    assert figures == ["shed", "frames"]
+    assert figures == ["side", "shed", "frames"]
 
 
 def test_drawings_do_not_hang_on_names(tmp_path: Path) -> None:
@@ -254,7 +301,7 @@ def test_drawings_do_not_hang_on_names(tmp_path: Path) -> None:
 def test_the_belt_in_motion_has_a_drawing_of_its_own(tmp_path: Path) -> None:
     html = made(loomfmu.run(SIMS / "belt_motion.toml", output=tmp_path / "run.h5").trace).html
     assert '<figure id="motion-belt-belt_motion"' in html
-    assert "In motion it has other shapes of the same largest deflection" in html
+    assert "at its recorded place" in html
 
 
 def test_a_linkage_that_does_not_give_the_recorded_travel_is_not_drawn(
@@ -284,7 +331,7 @@ def test_a_report_opens_at_the_worst_claim_of_all_traces(demo: Trace, fast: Trac
 def test_each_drawing_has_a_sentence(whole: Trace) -> None:
     html = made(whole).html
     labels = re.findall(r'<svg [^>]*role="img" aria-label="([^"]+)"', html)
-    assert len(labels) == html.count("<figure ") == 12
+    assert len(labels) == html.count("<figure ") == 13
     assert all(label.endswith(".") and len(label) > 40 for label in labels)
 
 
@@ -327,11 +374,11 @@ def test_a_revolution_that_is_not_kept_says_so(
 
 def test_play_moves_the_head(pages: dict[str, Path], opened: Open) -> None:
     page = opened(pages["buckled"])
-    value = page.locator('#motion-width-belt output[data-value="belt.travelled"]')
+    value = page.locator('#motion-front-belt output[data-value="belt.unbent"]')
     seek(page, 100.0)
-    assert value.inner_text() == "963.4"
+    assert value.inner_text() == "720.4"
     page.keyboard.press("ArrowRight")
-    assert float(value.inner_text()) > 970.0
+    assert float(value.inner_text()) > 727.0
 
 
 def test_nothing_stands_out_on_a_narrow_screen(pages: dict[str, Path], opened: Open) -> None:

@@ -199,11 +199,13 @@ def export(options: argparse.Namespace) -> int:
         "--output", "FILE.html", "results/SCENE_page.html by default, with the values of --set in its name"
     ),
     PROVE,
+    flag("--limits", "mark on each slider where the claims hold; this takes some 50 runs for each"),
     force("FILE.html even if it is not such a page"),
 )
 def page(options: argparse.Namespace) -> int:
     """Write a scene as a page in which its FMUs run (HTML)."""
     from ..live_page import write
+    from ..studies.limits.marks import marks
 
     def warn(warning: str) -> None:
         complain(f"warning: {warning}")
@@ -211,5 +213,9 @@ def page(options: argparse.Namespace) -> int:
     given = pairs(options.overrides)
     proofs = proofs_of(options.scene, options.prove, given)
     proven = ({}, {}) if proofs is None else (proofs.remarks, proofs.ranges)
-    say(f"written: {write(options.scene, options.vary, options.output, given, options.force, warn, proven)}")
+    marked = marks if options.limits else None
+    written = write(
+        options.scene, options.vary, options.output, given, options.force, warn, proven=proven, marks=marked
+    )
+    say(f"written: {written}")
     return 0

@@ -42,6 +42,17 @@ class Knob:
     doubts: tuple[str, ...] = ()
 
 
+@dataclass(frozen=True)
+class Marks:
+    """Limits along a knob while the others have the scene's values.
+
+    All claims hold in `ranges`, in percent of the knob's range; `texts` say where each claim holds.
+    """
+
+    ranges: tuple[tuple[float, float], ...]
+    texts: tuple[str, ...]
+
+
 def knobs(scene: Scene, parameters: Iterable[str], vary: Sequence[str]) -> list[Knob]:
     """The knobs of a page whose run takes these parameters; the shaft's speed by default.
 

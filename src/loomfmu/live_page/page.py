@@ -31,7 +31,7 @@ from ..report.section import Section, Subject
 from ..report.templates import template
 from ..traces import Trace
 from .claims import Proven, claims
-from .knobs import Knob, ends_of, knobs
+from .knobs import Knob, Marks, ends_of, knobs
 
 MARK = "<!DOCTYPE html>\n<!-- a page of loomfmu -->\n"
 PAGE = starts_with("a page of loomfmu", MARK.encode(), suffix=".html", advice=PRINT)
@@ -48,6 +48,7 @@ def write(
     overwrite: bool = False,
     warn: Callable[[str], object] = lambda _warning: None,
     proven: Proven = ({}, {}),
+    marks: Callable[[Scene, Knob], Marks] | None = None,
 ) -> Path:
     """Write the page of a scene and return its path.
 
@@ -61,6 +62,8 @@ def write(
         overwrite: also replace a file that is not such a page
         warn: called with each warning of the scene and of the ranges
         proven: what to say of claims that are proven, by their numbers, and the ranges for which they are
+        marks: gives what is marked on each slider of a real number, such as
+            `loomfmu.studies.limits.marks.marks`, which searches for the limits of all claims
 
     Raises:
         LoomfmuError: bad input, what cannot be compiled or varied, or the file cannot be written
@@ -81,7 +84,10 @@ def write(
             data = _data(loaded, subject, rows, varied) | _stepping(whole, trace, rows)
             data["judging"] = claims(loaded, ends_of(loaded, varied), trace, started.claims, proven)
             data["wasm"] = b64encode(wasm).decode()
-            controls = template("live.html.j2").render(knobs=varied)
+            marked = {
+                each.key: marks(loaded, each) for each in varied if marks and not (each.choices or each.whole)
+            }
+            controls = template("live.html.j2").render(knobs=varied, marked=marked)
             live = Section("live", "Values", controls, SCRIPTS, data)
             keys = [knob.key for knob in varied]
             called = f"{heading(loaded, keys)}; varied: {', '.join(keys)}"

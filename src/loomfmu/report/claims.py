@@ -10,10 +10,10 @@ from .section import Section, Subject, labels
 from .templates import template
 
 
-def section(subject: Subject) -> Section:
-    """The claims of every trace: first the outcomes, then one table with the verdicts side by side."""
+def outcomes(subject: Subject) -> list[dict[str, str]]:
+    """The verdict on the run of each trace, with the label of the trace if there are several."""
     several = len(subject.traces) > 1
-    runs = [
+    return [
         {
             "label": label if several else "",
             "outcome": (holding if several else outcome)(trace.verdicts, trace.judged),
@@ -21,11 +21,17 @@ def section(subject: Subject) -> Section:
         }
         for label, trace in zip(labels(subject.traces), subject.traces, strict=True)
     ]
+
+
+def section(subject: Subject) -> Section | None:
+    """The claims of every trace: one table with the verdicts side by side; None if there are none."""
     rows = [
         [each if each is None else (each, _distance(each), subject.position(each)) for each in row]
         for row in side_by_side([trace.verdicts for trace in subject.traces])
     ]
-    html = template("claims.html.j2").render(runs=runs, rows=rows)
+    if not rows:
+        return None
+    html = template("claims.html.j2").render(runs=outcomes(subject), rows=rows)
     return Section("claims", "Claims", html, ("claims.js",), of_first=False)
 
 

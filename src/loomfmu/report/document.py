@@ -1,6 +1,6 @@
 """The report as one HTML file: its sections in their order, with style and scripts inline."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
@@ -8,9 +8,10 @@ from typing import Any
 from ..errors import LoomfmuError
 from ..files import check_target, short_stem, starts_with, write_file
 from ..traces import Comparison, Trace
+from .claims import outcomes
 from .claims import section as claims
 from .diagram import section as diagram
-from .drawings import section as motion
+from .drawings import sections as drawings
 from .plots import section as plots
 from .provenance import section as provenance
 from .section import Section, Subject, embedded, labels, spread
@@ -20,8 +21,6 @@ MARK = "<!DOCTYPE html>\n<!-- a report of loomfmu -->\n"
 PRINT = ", and print the page to PDF in a browser"
 REPORT = starts_with("a report of loomfmu", MARK.encode(), suffix=".html", advice=PRINT)
 CURSOR_POINTS = 2000  # between which the cursor's time is interpolated
-
-SECTIONS: tuple[Callable[[Subject], Section | None], ...] = (claims, diagram, motion, plots, provenance)
 
 
 def write(
@@ -73,8 +72,10 @@ def _compared(comparison: Comparison) -> Section:
 
 
 def sections(subject: Subject) -> list[Section]:
-    """Return the sections that are not empty, in their order."""
-    return [section for make in SECTIONS if (section := make(subject))]
+    """Return the sections that are not empty, in their order: the whole loom first, its details later."""
+    drawn = drawings(subject)
+    made = (*drawn[:-1], claims(subject), diagram(subject), *drawn[-1:], plots(subject), provenance(subject))
+    return [section for section in made if section]
 
 
 def assembled(
@@ -86,8 +87,12 @@ def assembled(
     """
     trace, several = subject.trace, len(subject.traces) > 1
     runs = [
-        {"heading": (f"{label}: " if several else "") + (heading or each.heading), "origin": each.origin}
-        for label, each in zip(labels(subject.traces), subject.traces, strict=True)
+        {
+            "heading": (f"{judged['label']}: " if several else "") + (heading or each.heading),
+            "origin": each.origin,
+        }
+        | judged
+        for judged, each in zip(outcomes(subject), subject.traces, strict=True)
     ]
     body: str = template("page.html.j2").render(
         runs=runs,

@@ -1,5 +1,5 @@
 """The mechanisms of the loom as schematic drawings that move with the page's cursor."""
 
-from .section import section
+from .section import sections
 
-__all__ = ["section"]
+__all__ = ["sections"]

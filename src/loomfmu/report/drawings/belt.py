@@ -17,6 +17,8 @@ FINER = FINEST  # a belt buckles within a degree
 POINTS = 33  # of a buckled belt
 SHAPES = 41  # between a straight belt and the one that is bent most
 MOVING = "BeltDynamics"  # the FMU of a belt whose deflection is integrated
+FLAT = 1e-2  # mm: nothing of less width or height is drawn at all
+QUARTER = [(round(x, 4), round(sin(0.5 * pi * x), 4)) for x in np.linspace(0.0, 1.0, 17)]  # of a wave
 HEAD = 150.0  # mm: length drawn of the head, of which a trace knows only the length with its rigid section
 
 
@@ -76,13 +78,15 @@ class Belt:
     inside: str
     tail: str
     tip: str
+    within: Rule  # positive while the head is in the shed, the belt taken as straight
     deflection: str
-    travel: str
     slope: str  # half that of its ends [rad]; empty if it never buckles
     pressed: str  # empty if its compression is not recorded
     idle: float
     head: float
-    moving: bool  # its deflection is that of a motion, not of a load that lasts
+    moving: (
+        str  # track of its deflection's place, if that is of a motion, not of a load that lasts; else empty
+    )
 
 
 def tracked(tracks: Tracks, name: str) -> Belt:
@@ -92,9 +96,14 @@ def tracked(tracks: Tracks, name: str) -> Belt:
     force = f"{name}.{'compression' if moving else 'axial_force'}"
     free, bent = (f"{name}.{each}" for each in ("free_length", "deflection"))
     idle, head = (1000.0 * tracks.parameter(f"{name}.{each}") for each in ("idle_travel", "head_length"))
-    slope, tail = "", mm(free)
-    if live or tracks.values(["highest", bent]) > 0.0:
-        known = f"{name}.margin" in trace and not moving  # a margin of the load
+    slope, tail, place = "", mm(free), ""
+    if moving:
+        tail = mm(["-", free, f"{name}.shortening"])
+        place = tracks.add(f"{name}.place", ["max", mm(f"{name}.deflection_place"), FLAT])
+        tracks.add(f"{name}.bend", ["max", mm(bent), FLAT])
+        tracks.add(f"{name}.rest", ["min", ["-", f"{name}.place", tail], -FLAT])
+    elif live or tracks.values(["highest", bent]) > 0.0:
+        known = f"{name}.margin" in trace  # of the load
         load: Rule = ["-", 1.0, f"{name}.margin"] if known else 0.0
         slope = tracks.add(f"{name}.slope", half_slope(bent, free, load), 1e-4, FINER)
         grid = np.linspace(0.0, _steepest(tracks, slope), 100)
@@ -108,40 +117,19 @@ def tracked(tracks: Tracks, name: str) -> Belt:
         tracks.add(f"{name}.inside", mm(["min", free, 0.0])),
         tracks.add(f"{name}.tail", tail, finer=finer),
         tracks.add(f"{name}.tip", ["-", tail, -head], finer=finer),
+        ["-", mm(free), -head],
         tracks.mm(bent, finer),
-        tracks.add(f"{name}.travelled", ["-", mm(free), -idle - head]),
         slope,
         pressed,
         idle,
         head,
-        moving,
+        place,
     )
 
 
 def _steepest(tracks: Tracks, slope: str) -> float:
     """The largest half slope that is drawn: any, if the page itself runs the belt."""
     return BENT_BACK[-1] if tracks.subject.live else float(np.max(tracks.values(slope)))
-
-
-def width(tracks: Tracks, belt: Belt) -> Figure:
-    """The head's way across the loom, with the wheel on which the belt is wound."""
-    reach = reached(tracks, belt)
-    radius = wheel_radius(tracks, belt)
-    left = wheel_centre(belt, radius) - radius - 40.0
-    sketch = Sketch(tracks, left, -190.0, max(reach, 500.0) + 60.0, 2.0 * radius + 130.0)
-    side(sketch, belt, radius)
-    axis(sketch, max(reach, 500.0), 500.0)
-    sketch.line((reach, -60.0), (reach, 90.0), role="path")
-    sketch.label(reach, 90.0, "innermost", "end", (0.0, -5.0))
-    sketch.label(-0.5 * (belt.idle + belt.head), 28.0, "guide", shift=(0.0, -8.0))
-    return sketch.figure(
-        f"width-{belt.name}",
-        title("Across the loom", belt.name, "belt"),
-        f"The rapier head on its way from the guide across the loom's width, up to {reach:.0f} mm into the"
-        " shed.",
-        [Value("head into the shed", belt.tip, "mm"), Value("travel", belt.travel, "mm")],
-        "The axis counts mm from the end of the guide. Heights of head and guide are schematic.",
-    )
 
 
 def reached(tracks: Tracks, belt: Belt) -> float:
@@ -162,25 +150,21 @@ def wheel_centre(belt: Belt, radius: float) -> float:
     return -belt.idle - belt.head - 1.3 * radius
 
 
-def axis(sketch: Sketch, end: float, step: float) -> None:
-    """The axis that counts from the end of the guide."""
-    for x in np.arange(0.0, end, step):
-        sketch.line((x, -60.0), (x, -90.0))
-        sketch.label(x, -90.0, f"{x:g}", shift=(0.0, 14.0))
-    sketch.line((0.0, -60.0), (end, -60.0))
-
-
-def side(sketch: Sketch, belt: Belt, radius: float) -> None:
-    """A belt from its wheel through its guide to its head."""
+def wound(sketch: Sketch, belt: Belt, radius: float) -> None:
+    """A wheel from which a belt leaves at the height of the head."""
     centre = wheel_centre(belt, radius)
-    if radius:
-        sketch.circle((centre, radius), radius, "body")
-        sketch.joint((centre, radius))
-        wound = [(centre - radius * np.sin(a), radius + radius * np.cos(a)) for a in np.linspace(0.0, pi, 25)]
-        sketch.line(*wound, role="link belt")
-    for y in (-28.0, 28.0):
+    sketch.circle((centre, radius), radius, "body")
+    sketch.joint((centre, radius))
+    around = [(centre - radius * np.sin(a), radius + radius * np.cos(a)) for a in np.linspace(0.0, pi, 25)]
+    sketch.line(*around, role="link belt")
+
+
+def through_guide(sketch: Sketch, belt: Belt, radius: float, half: float) -> None:
+    """A belt from its wheel through its guide to its head, of which half the height is given."""
+    centre = wheel_centre(belt, radius)
+    for y in (-half, half):
         sketch.line((centre + 1.1 * radius, y), (0.0, y), role="rail")
-    _belt(sketch, belt, centre, 32.0)
+    _belt(sketch, belt, centre, half)
 
 
 def between(tracks: Tracks, belt: Belt) -> Figure:
@@ -200,16 +184,14 @@ def between(tracks: Tracks, belt: Belt) -> Figure:
     _belt(sketch, belt, 2.0 * sketch.left, 9.0)
     sketch.label(0.0, 9.0, "guide", "end", (-4.0, -6.0))
     shape = (
-        "The belt is the exact elastica of the recorded deflection, pinned at both ends; it is drawn bent"
-        " upwards, and the head lags by the length that the bend takes up."
+        "The belt has its recorded largest deflection at its recorded place, between quarter waves; it is"
+        " drawn bent upwards, and the head lags by the recorded shortening. Further waves are not recorded."
+        if belt.moving
+        else "The belt is the exact elastica of the recorded deflection, pinned at both ends; it is drawn"
+        " bent upwards, and the head lags by the length that the bend takes up."
         if belt.slope
         else "The belt stays straight in this run."
     )
-    if belt.moving:
-        shape += (
-            " In motion it has other shapes of the same largest deflection, to either side; how guide and"
-            " head hold its ends is not drawn."
-        )
     does = f", which {'buckles' if belt.slope else 'stays straight'} in this run."
     does = "." if live or belt.moving else does
     return sketch.figure(
@@ -238,6 +220,12 @@ def _belt(sketch: Sketch, belt: Belt, start: float, half: float) -> None:
 
 
 def _free(sketch: Sketch, belt: Belt, role: str) -> None:
+    if belt.moving:
+        bend = f"{belt.name}.bend"
+        for at, wide in ((0.0, belt.moving), (belt.tail, f"{belt.name}.rest")):
+            with sketch.group(shown=belt.outside), sketch.group(stretch=(at, 0.0, wide, bend)):
+                sketch.line(*QUARTER, role=role)
+        return
     if not belt.slope:
         sketch.line((0.0, 0.0), (belt.outside, 0.0), role=role)
         return

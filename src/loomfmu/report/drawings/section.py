@@ -1,19 +1,22 @@
 """The loom in motion: a drawing of each mechanism that the trace records."""
 
+from dataclasses import replace
 from math import degrees, floor
 
 from ..occasions import instances
 from ..section import COARSEST, TURN, Section, Subject
 from ..templates import template
 from .belt import MOVING, between, shapes, tracked
-from .drive import drive
-from .rapiers import across
+from .drive import drive, figure
+from .frames import frames
+from .front import pairs, transfer, view
 from .reed import beat_up
-from .shed import frames, shed
+from .side import shed_of, views
 from .sketch import Figure
 from .tracks import Tracks
 from .yarn import yarn
 
+WHOLE, DETAILS = "The loom", "Its mechanisms"  # titles
 DRAWN = {
     "WeftInsertion": ("travel",),
     "BeltMonitor": ("free_length", "deflection"),
@@ -24,40 +27,52 @@ DRAWN = {
 }
 
 
-def section(subject: Subject) -> Section | None:
-    """Drawings of the first trace's mechanisms; None if it records none that can be drawn."""
+def sections(subject: Subject) -> list[Section]:
+    """The whole loom and its mechanisms in motion, of the first trace; nothing if it records none of them."""
     if not any(instances(subject.trace, fmu, *signals) for fmu, signals in DRAWN.items()):
-        return None
+        return []
     if subject.turns and subject.gap > COARSEST:
         apart = f"{degrees(subject.gap):.0f}°"
         coarse = f"Not drawn: the samples are up to {apart} apart, too far to show a motion."
-        return Section("motion", "The loom in motion", template("motion.html.j2").render(coarse=coarse))
+        return [Section("motion", DETAILS, template("motion.html.j2").render(coarse=coarse))]
     tracks = Tracks(subject, subject.start)
-    figures = _figures(tracks)
-    if not figures:
-        return None
+    whole, details = _figures(tracks)
+    if not details:
+        return []
     place = _place(subject, tracks.still)
-    html = template("motion.html.j2").render(coarse="", place=place, figures=figures)
-    moved = tracks.rules() if subject.live else tracks.data()
-    data = moved | {"bows": shapes(tracks)}
-    return Section("motion", "The loom in motion", html, ("motion.js",), data)
+    parts = [("loom", WHOLE, whole)] * bool(whole) + [("motion", DETAILS, details)]
+    pages = [
+        template("motion.html.j2").render(
+            coarse="", figures=figures, name=name, place="" if number else place
+        )
+        for number, (name, _title, figures) in enumerate(parts)
+    ]
+    moved = (tracks.rules() if subject.live else tracks.data()) | {"bows": shapes(tracks)}
+    made = [Section(name, title, html) for (name, title, _figures), html in zip(parts, pages, strict=True)]
+    return [*made[:-1], replace(made[-1], scripts=("motion.js",), data=moved)]
 
 
-def _figures(tracks: Tracks) -> list[Figure]:
-    """Drawings in the order of the weft's way, then of the warp's."""
+def _figures(tracks: Tracks) -> tuple[list[Figure], list[Figure]]:
+    """The whole loom, then each mechanism: in the order of the weft's way, then of the warp's."""
     weft, belts, yarns, reeds = (
         instances(tracks.trace, fmu, *DRAWN[fmu])
         for fmu in ("WeftInsertion", "BeltMonitor", "WeftTension", "ReedBeatUp")
     )
-    drives = [drive(tracks, name) for name in weft]
-    found = [tracked(tracks, name) for name in belts]
-    ways = [*across(tracks, found), *(between(tracks, belt) for belt in found)]
-    moving = instances(tracks.trace, MOVING, *DRAWN[MOVING])
-    ways += [between(tracks, tracked(tracks, name)) for name in moving]
-    warp = [shed(tracks, found[0].tip if found else ""), frames(tracks)]
-    drawn = [yarn(tracks, name) for name in yarns]
-    every = [*drives, *ways, *drawn, *warp, *(beat_up(tracks, name) for name in reeds)]
-    return [figure for figure in every if figure]
+    drives = {name: found for name in weft if (found := drive(tracks, name))}
+    monitored = [tracked(tracks, name) for name in belts]
+    moving = [tracked(tracks, name) for name in instances(tracks.trace, MOVING, *DRAWN[MOVING])]
+    shed, met = shed_of(tracks, monitored[0] if monitored else None), pairs(tracks, monitored)
+    whole = views(tracks, shed) if shed else []
+    details = [
+        *(figure(tracks, each) for each in drives.values()),
+        *(transfer(tracks, pair) for pair in met),
+        *(between(tracks, belt) for belt in (*monitored, *moving)),
+        *(yarn(tracks, name) for name in yarns),
+        frames(tracks),
+        *(beat_up(tracks, name) for name in reeds),
+    ]
+    whole += [view(tracks, pair, drives, shed) for pair in met]
+    return whole, [each for each in details if each]
 
 
 def _place(subject: Subject, position: float) -> str:

@@ -9,7 +9,7 @@ from .tracks import Tracks
 
 Coordinate = float | str  # mm, or the name of a track in mm
 Point = tuple[Coordinate, Coordinate]
-WIDTH = 440.0  # px of every drawing, so that labels are of one size
+WIDTH = 440.0  # px of a drawing beside others, so that labels are of one size
 SCALES = (5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0)  # mm of a scale bar
 
 
@@ -34,6 +34,7 @@ class Figure:
     svg: str
     values: Sequence[Value] = ()
     note: str = ""
+    width: float = WIDTH
 
 
 @dataclass
@@ -45,13 +46,14 @@ class Sketch:
     bottom: float
     right: float
     top: float
+    width: float = WIDTH  # px
     parts: list[str] = field(default_factory=list)
     labels: list[str] = field(default_factory=list)
 
     @property
     def scale(self) -> float:
         """px a mm."""
-        return WIDTH / (self.right - self.left)
+        return self.width / (self.right - self.left)
 
     @property
     def height(self) -> float:
@@ -66,7 +68,7 @@ class Sketch:
         return "\n".join([f'<g transform="{place}">', *self.parts, "</g>", *self.labels, *self._bar()])
 
     def _bar(self) -> list[str]:
-        length = max((each for each in SCALES if each * self.scale < 0.3 * WIDTH), default=SCALES[0])
+        length = max((each for each in SCALES if each * self.scale < 0.3 * self.width), default=SCALES[0])
         y, x = self.height - 8.0, 8.0 + length * self.scale
         return [
             f'<path class="scale" d="M8 {y - 4:.5g}v8m0-4H{x:.5g}m0-4v8"/>',
@@ -115,13 +117,23 @@ class Sketch:
 
     @contextmanager
     def group(
-        self, shift: Point | None = None, turn: tuple[str, float, float] | None = None, shown: str = ""
+        self,
+        shift: Point | None = None,
+        turn: tuple[str, float, float] | None = None,
+        shown: str = "",
+        stretch: tuple[Coordinate, ...] = (),
     ) -> Iterator[None]:
-        """Parts that move together: shifted, turned [deg] about a point, shown while a track is positive."""
+        """Parts that move together: shifted, turned [deg] about a point, shown while a track is positive.
+
+        `stretch` shifts them, too, and makes them as many times as wide and as high.
+        """
         attributes = ""
         if shift:
             x, y = (f"{self.tracks.at(each):.6g}" for each in shift)
             attributes += f' transform="translate({x} {y})"{_moving("shift", shift)}'
+        if stretch:
+            x, y, wide, high = (f"{self.tracks.at(each):.6g}" for each in stretch)
+            attributes += f' transform="translate({x} {y}) scale({wide} {high})"{_moving("stretch", stretch)}'
         if turn:
             attributes += f' transform="rotate({self.tracks.at(turn[0]):.6g} {turn[1]:g} {turn[2]:g})"'
             attributes += _moving("turn", turn)
@@ -138,6 +150,13 @@ class Sketch:
         px = self.scale * (x - self.left) + shift[0]
         py = self.scale * (self.top - y) + shift[1]
         self.labels.append(f'<text x="{px:.5g}" y="{py:.5g}" text-anchor="{anchor}">{escape(text)}</text>')
+
+    def pointed(
+        self, at: tuple[float, float], to: tuple[float, float], text: str, anchor: str = "middle"
+    ) -> None:
+        """A label at a place, with a line to what it names; the line leaves it above or below."""
+        self.line(at, to, role="leader")
+        self.label(*at, text, anchor, (0.0, -4.0 if at[1] > to[1] else 14.0))
 
     def letter(self, at: Point, text: str, shift: tuple[float, float] = (10.0, 4.0)) -> None:
         """A letter that moves with a point, shifted by px."""
@@ -157,7 +176,7 @@ class Sketch:
     ) -> Figure:
         """The drawing as a figure of the page."""
         shown = [replace(each, text=f"{self.tracks.at(each.track):.1f}") for each in values]
-        return Figure(name, title, sentence, self.height, self.svg, shown, note)
+        return Figure(name, title, sentence, self.height, self.svg, shown, note, self.width)
 
 
 def title(what: str, instance: str, usual: str) -> str:

@@ -113,7 +113,8 @@ class Tracks:
         `finer` is the number of keyframes for each usual one, for what moves at a jump.
         """
         along = self.subject.along(self.trace)
-        return self._keep(name, np.interp(self._places(finer), along, self.values(rule)), step, rule)
+        values = np.broadcast_to(self.values(rule), along.shape)
+        return self._keep(name, np.interp(self._places(finer), along, values), step, rule)
 
     def _places(self, finer: int) -> NDArray[np.float64]:
         """Positions of the keyframes, a row for each window."""

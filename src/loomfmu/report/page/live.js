@@ -110,8 +110,17 @@ loomfmu.live = (() => {
     }
   });
 
+  /* Limits are those of a knob while the others have the scene's values. */
+  function mark() {
+    form.querySelectorAll(".knob").forEach((box, number) => {
+      const limits = box.querySelector(".limits");
+      if (limits) limits.hidden = plan.knobs.some((knob, other) => other !== number && values[other] !== knob.start);
+    });
+  }
+
   function soon() {
     address();
+    mark();
     document.getElementById("live-copied").textContent = "";
     loomfmu.live.pace = null; // until the page shows the values
     if (waiting || !steps) return;

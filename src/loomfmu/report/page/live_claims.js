@@ -12,7 +12,8 @@ loomfmu.shownIn = ({ factor, unit }, value, digits = 7) =>
 (() => {
   const { claims } = loomfmu.live.plan.judging, DEGREE = Math.PI / 180;
 
-  const rows = document.querySelectorAll("#claims tbody tr"), outcome = document.querySelector("#claims .outcome");
+  const rows = document.querySelectorAll("#claims tbody tr"), outcome = document.querySelector(".outcome");
+  document.getElementById("live-knobs").before(outcome); // in sight with the sliders
   const kept = [], bases = []; // verdicts, and the samples that they are of
   let checked = false;
 

@@ -1,7 +1,7 @@
 // Moves the parts of the drawings to where the keyframes have them at the cursor's position, or the run of the page.
 (() => {
   const { first, span, tracks, bows, fixed } = loomfmu.data("motion"), { live } = loomfmu;
-  const root = document.getElementById("motion"), missing = document.getElementById("motion-missing");
+  const roots = [...document.querySelectorAll(".motion")], missing = document.getElementById("motion-missing");
   for (const track of Object.values(tracks))
     if (track.frames) track.frames = track.frames.map(steps => { let sum = 0; return steps.map(step => sum += step); });
   const windows = live ? Infinity : Math.max(...Object.values(tracks).map(track => track.shown.length));
@@ -19,7 +19,7 @@
     return track.step * between(frame, index, place - index);
   };
   const follower = word => Number.isNaN(Number(word)) ? () => value(word) : () => Number(word);
-  const followers = (how, move) => [...root.querySelectorAll(`[data-${how}]`)].map(element => {
+  const followers = (how, move) => roots.flatMap(root => [...root.querySelectorAll(`[data-${how}]`)]).map(element => {
     const names = element.getAttribute(`data-${how}`).split(" "), words = names.map(follower);
     return { figure: element.closest("figure"), names, move: () => move(element, words.map(word => word())) };
   });
@@ -36,6 +36,7 @@
     ...followers("points", (element, at) => element.setAttribute("points", at.map(each => each.toFixed(3)).join(" "))),
     ...followers("at", (element, [x, y]) => { element.setAttribute("cx", x); element.setAttribute("cy", y); }),
     ...followers("shift", (element, [x, y]) => element.setAttribute("transform", `translate(${x} ${y})`)),
+    ...followers("stretch", (element, [x, y, wide, high]) => element.setAttribute("transform", `translate(${x} ${y}) scale(${wide} ${high})`)),
     ...followers("turn", (element, [angle, x, y]) => element.setAttribute("transform", `rotate(${angle} ${x} ${y})`)),
     ...followers("shown", (element, [amount]) => element.toggleAttribute("hidden", !(amount > 0))),
     ...followers("bow", (element, at) => element.setAttribute("points", bow(...at))),
@@ -51,7 +52,7 @@
     if (live && !ran) return; // the drawings show the run that the page was written with
     missing.hidden = known || Boolean(live && !live.current);
     if (live) missing.textContent = `The drawings have the scene’s own ${varied().join(", ")}, so they do not show this run.`;
-    root.classList.toggle("stale", !known);
+    for (const root of roots) root.classList.toggle("stale", !known);
     if (!known) return; // drawings and caption stay as they were, together
     for (const { figure, move } of moves) if (!waiting.has(figure)) move();
     document.getElementById("motion-place").textContent = loomfmu.label(position);
@@ -67,7 +68,7 @@
       for (const track of Object.values(tracks)) if (run && track.rule) track.value = rule(track.rule);
       const waits = ({ names }) => names.some(name => tracks[name] && loomfmu.waits(run, name, tracks));
       waiting = new Set(run ? moves.filter(waits).map(({ figure }) => figure) : []);
-      for (const figure of root.querySelectorAll("figure")) { // those that wait fade and say so
+      for (const figure of document.querySelectorAll(".motion figure")) { // those that wait fade and say so
         figure.classList.toggle("stale", waiting.has(figure));
         figure.querySelector(".waits").hidden = !waiting.has(figure);
       }
