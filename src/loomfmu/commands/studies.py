@@ -141,8 +141,9 @@ def tolerances(options: argparse.Namespace) -> int:
     argument("--boxes", "N", "boxes that are tried for a claim before it is left open (200000)", type=int),
     SET,
     argument("--certificate", "FILE.json", "also write what others need to confirm it"),
+    argument("--picture", "FILE.svg|png|pdf", "also draw what is left open"),
     argument("--check", "FILE.json", "confirm a certificate instead of proving"),
-    force("the certificate even if loomfmu did not write it"),
+    force("the certificate or the picture even if loomfmu did not write it"),
     statuses=(
         "0 all claims are proven, or confirmed; 1 one is refuted, left open or cannot be proven; 2 bad input."
     ),
@@ -155,18 +156,23 @@ def prove(options: argparse.Namespace) -> int:
         need("confirming a certificate", "proof")
         from ..studies.proving.check import check
 
-        if options.over or options.claim or options.certificate or options.overrides or options.boxes:
+        given = ("over", "claim", "certificate", "picture", "overrides", "boxes")
+        if any(getattr(options, name) for name in given):
             raise LoomfmuError("--check takes a certificate alone: the ranges and the claims are in it")
         say(*check(options.check))
         return 0
+    from ..report import pictures
     from ..studies.proving import certificate
-    from ..studies.proving.proofs_shown import show
+    from ..studies.proving.proofs_shown import draw, show
     from ..studies.proving.prove import prove as find
     from ..studies.proving.search import MOST
 
     inputs, output = [Path(options.scene)], Path(options.certificate) if options.certificate else None
     if output is not None:
         check_target(output, certificate.CERTIFICATE, inputs, options.force)
+    picture = Path(options.picture) if options.picture else None
+    if picture is not None:
+        pictures.check(picture, inputs, options.force)
     found = find(
         options.scene,
         over=options.over,
@@ -174,7 +180,10 @@ def prove(options: argparse.Namespace) -> int:
         claims=options.claim,
         boxes=MOST if options.boxes is None else options.boxes,
     )
-    writers = {output: lambda path: certificate.write(found, path, inputs, options.force)}
+    writers = {
+        output: lambda path: certificate.write(found, path, inputs, options.force),
+        picture: lambda path: pictures.save(draw(found), path, found.scene.title, inputs, options.force),
+    }
     return _reported(found, show, writers)
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...components import COMPONENTS
-from ...declaring.variables import variables_of
+from ...declaring.variables import Variable, variables_of
 from ...errors import LoomfmuError
 from .arguments import Window
 from .movers import Wired
@@ -200,9 +200,15 @@ def present(signal: str, run: Wired, sense: int) -> str:
     base = found.lowest_of if sense > 0 else found.highest_of
     if base and found.type is float:
         return f"{name}.{base}"
-    if found.one_way and found.causality == "output" and found.variability != "fixed" and found.depends != ():
+    if remembers(found):
         raise Unprovable(f"{signal} depends on the run so far")
     return signal
+
+
+def remembers(variable: Variable) -> bool:
+    """Return whether an output holds what was before, such as an extreme."""
+    held = variable.one_way and variable.causality == "output" and variable.variability != "fixed"
+    return held and variable.depends != ()
 
 
 def names_of(conditions: Sequence[Condition]) -> list[str]:

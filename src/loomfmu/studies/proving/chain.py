@@ -12,7 +12,7 @@ import numpy as np
 
 from ...components import COMPONENTS
 from ...components.shaft_driven import FOLLOWING, ShaftDriven
-from ...cosim.claims.conditions import Unprovable
+from ...cosim.claims.conditions import Unprovable, remembers
 from ...cosim.planning.pruning import prune
 from ...cosim.scenes.graph import step_order
 from ...cosim.scenes.instances import Instance
@@ -169,6 +169,9 @@ class Chain:
             if self._drives[instance.name, variable].held:
                 raise Unprovable(f"{instance.name}.{variable} jumps from row to row of its table")
         wanted = tuple(sorted(each for each in read if variables[each].causality == "output"))
+        for each in wanted:
+            if remembers(variables[each]):
+                raise Unprovable(f"{instance.name}.{each} depends on the run so far")
         return _Placed(
             instance.name,
             Enclosed(component, wanted, settings_of(variables.values(), instance.start)),

@@ -29,6 +29,7 @@ from ...cosim.claims.conditions import (
     Sum,
     Unprovable,
     names_of,
+    remembers,
 )
 from ...cosim.planning.pruning import prune
 from ...cosim.reading import requested
@@ -312,6 +313,8 @@ class _Mechanisms:
             wanted = [
                 v.name for v in variables_of(component) if (name, v.name) in read and v.causality == "output"
             ]
+            if any(remembers(each) for each in variables_of(component) if each.name in wanted):
+                raise Refused(f"{name} gives what depends on the run so far")
             wires = {w.sink[1]: ".".join(w.source) for w in needed.wires if w.sink[0] == name}
             warnings = [0, *(n for n, each in enumerate(component.problems, 1) if each.warning)]
             self._parts.append(

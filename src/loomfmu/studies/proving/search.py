@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterable, Sequence
 from functools import cached_property, partial
 from itertools import cycle, product
+from typing import Any
 
 import numpy as np
 
@@ -54,15 +55,14 @@ class Search:
         share = math.prod(each.share for each in parts)
         boxes = sum(each.boxes for each in parts)
         left = [box for each in parts for box in each.open]
+        shown: tuple[Any, ...] = covers, () if chain.timed else chain.components
         if not left:
-            return Proof(
-                name, number, PROVEN, "", 1.0, boxes, {}, covers, () if chain.timed else chain.components
-            )
+            return Proof(name, number, PROVEN, "", 1.0, boxes, {}, *shown)
         places = (self._middle(box) for box in left[:: math.ceil(len(left) / LOOKED_AT)])
         witness = self._witness(number, map(self._run, places))
         if witness is not None:
             return Proof(name, number, REFUTED, "", share, boxes, witness)
-        return Proof(name, number, OPEN, f"{len(left)} of {boxes} boxes are left", share, boxes)
+        return Proof(name, number, OPEN, f"{len(left)} of {boxes} boxes are left", share, boxes, {}, *shown)
 
     def lowest_distance(self, number: int, width: float) -> Ends | None:
         """Enclose the lowest distance of a claim from its bound, no wider than this.
