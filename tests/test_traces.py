@@ -974,6 +974,11 @@ def test_a_relative_path_means_the_same_file_after_a_change_of_directory(
         ("[1]", "1 is not a JSON object"),
         ("[{}]", "claim is missing"),
         ('[{"claim": "x", "signal": "s", "holds": "no"}]', "holds = 'no'"),
+        (
+            '[{"claim": "x", "signal": "s", "holds": true, "unit": "m", "bound": 1, "time": 0, "angle": 0,'
+            f' "revolution": 1, "worst": {10**400}}}]',
+            "int too large to convert to float",
+        ),
     ],
 )
 def test_claims_that_are_not_verdicts_are_named(
@@ -984,3 +989,22 @@ def test_claims_that_are_not_verdicts_are_named(
     assert cli.main(["show", str(copied)]) == 2
     said = f"loomfmu: {copied}: the file is damaged (its claims are not verdicts: {why})\n"
     assert capsys.readouterr().err == said
+
+
+@pytest.mark.parametrize("text", ["{", "[]", "7"])
+@pytest.mark.parametrize(
+    ("place", "name", "ask"),
+    [
+        ("/", "set", lambda trace: trace.overrides),
+        ("/", "wires", lambda trace: trace.wires),
+        ("belt", "parameter_units", lambda trace: trace.parameter_unit("belt.speed")),
+        ("belt", "parameter_meanings", lambda trace: trace.parameter_text("belt.speed")),
+    ],
+)
+def test_tables_that_are_none_are_named(
+    copied: Path, place: str, name: str, ask: Callable[[Trace], Any], text: str
+) -> None:
+    with h5py.File(copied, "r+") as file:
+        file[place].attrs[name] = text
+    with pytest.raises(LoomfmuError, match=rf"run\.h5: the file is damaged \(its `{name}` is not a table\)"):
+        ask(Trace(copied))

@@ -29,6 +29,7 @@ ABOUT = (
     "signal",
     "axes",
 )  # attributes of a group that are not values
+NO_JSON = (RecursionError, TypeError, ValueError)  # for a text or its contents
 
 
 class Trace(Signals):
@@ -240,22 +241,29 @@ class Trace(Signals):
             if not isinstance(stored, list):
                 raise ValueError(f"{shown(stored)} is not a list")
             return [Verdict.of(each) for each in stored]
-        except (AttributeError, LookupError, RecursionError, TypeError, UnitError, ValueError) as error:
+        except (AttributeError, LookupError, OverflowError, *NO_JSON, UnitError) as error:
             raise self._damaged(f"its claims are not verdicts: {error}") from None
 
     @property
     def overrides(self) -> dict[str, Any]:
         """The values that differ from the scene, as `--set` takes them."""
-        try:
-            return dict(json.loads(str(self.attributes.get("set", "{}"))))
-        except (RecursionError, TypeError, ValueError):
-            raise self._damaged("its `set` is not a table") from None
+        return self._table(self.attributes, "set")
 
     @cached_property
     def wires(self) -> dict[str, str]:
         """The output that each wired input took its values from; traces of older versions do not say."""
-        found = json.loads(self.attributes.get("wires", "{}"))
+        found = self._table(self.attributes, "wires")
         return {str(sink): str(source) for sink, source in found.items()}
+
+    def _table(self, attributes: Any, name: str) -> dict[str, Any]:
+        """A table in JSON among attributes; empty where a trace of an older version has none."""
+        try:
+            found = json.loads(str(attributes.get(name, "{}")))
+        except NO_JSON:
+            found = None
+        if not isinstance(found, dict):
+            raise self._damaged(f"its `{name}` is not a table")
+        return found
 
     @cached_property
     def fmus(self) -> dict[str, str]:
@@ -316,7 +324,7 @@ class Trace(Signals):
         """The entry of a value in `parameters` in a table of its group; empty where it has none."""
         instance, _, key = name.partition(".")
         with self._file.opened() as file:
-            return str(json.loads(member(file, instance).attrs.get(attribute, "{}")).get(key, ""))
+            return str(self._table(member(file, instance).attrs, attribute).get(key, ""))
 
     def parameter_text(self, name: str) -> str:
         """A value in `parameters` as people read it."""
