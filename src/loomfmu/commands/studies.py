@@ -141,7 +141,7 @@ def tolerances(options: argparse.Namespace) -> int:
     argument("--boxes", "N", "boxes that are tried for a claim before it is left open (200000)", type=int),
     SET,
     argument("--certificate", "FILE.json", "also write what others need to confirm it"),
-    argument("--picture", "FILE.svg|png|pdf", "also draw what is left open"),
+    argument("--picture", "FILE.svg|png|pdf", "also draw what is proven and what is left open"),
     argument("--check", "FILE.json", "confirm a certificate instead of proving"),
     force("the certificate or the picture even if loomfmu did not write it"),
     statuses=(

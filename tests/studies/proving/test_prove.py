@@ -9,6 +9,7 @@ from loomfmu.cosim.claims.conditions import FALLS, IN, OUT, RISES, UNKNOWN, Span
 from loomfmu.cosim.scenes.scene import Scene, parse
 from loomfmu.errors import LoomfmuError
 from loomfmu.studies.proving.proofs import Proofs
+from loomfmu.studies.proving.proofs_shown import draw
 from loomfmu.studies.proving.prove import prove
 
 RAPIERS = Path(__file__).parents[3] / "sims" / "both_rapiers.toml"
@@ -182,6 +183,43 @@ def test_values_that_are_set_stay_set_while_others_vary(loom: Scene) -> None:
     assert prove(loom, set=heavier, over=over, claims=["margin"]).claims[0].status == "proven"
     (found,) = prove(loom, set=heavier, over=["shaft.speed=500rpm..640rpm"], claims=["margin"]).claims
     assert found.status == "refuted"
+
+
+HELD = """
+revolutions = 2
+steps_per_revolution = 360
+[loom]
+machine = "WL680-3600"
+head = "G6300 left"
+weave = "10"
+[wires]
+"heald_1.lift_slope" = "belt.lowest_margin"
+[[claims]]
+kind = "below"
+signal = "heald_1.rotor_torque"
+bound = 1e6
+at_samples = true
+"""
+
+
+def test_an_extreme_that_another_mechanism_reads_is_no_present_value() -> None:
+    (proof,) = prove(parse(HELD, "held")).claims
+    assert proof.status == "cannot be proven" and "depends on the run so far" in proof.why
+
+
+def test_what_is_left_open_is_drawn(loom: Scene, tmp_path: Path) -> None:
+    found = prove(loom, over=["shaft.speed=300rpm..640rpm"], claims=["margin", "dwell"], boxes=100)
+    axes, dwell = draw(found).axes
+    assert (axes.get_title(), dwell.get_title()) == ("margin", "dwell")
+    assert not dwell.collections[1].get_paths()
+    _proven, left = axes.collections
+    (cover,) = found.claims[0].covers[0][1]
+    assert len(left.get_paths()) == len(cover.open)
+    Path("loom.toml").write_text(loom.text)
+    command = ["prove", "loom.toml", "--claim", "margin", "--picture", "open.png"]
+    assert main([*command, "--boxes", "50"]) == 1 and Path("open.png").is_file()
+    assert main([*command, "--claim", "count", "--force"]) == 1
+    assert main(["prove", "loom.toml", "--claim", "count", "--picture", "none.png"]) == 2
 
 
 def test_a_run_notes_what_is_proven(

@@ -31,6 +31,8 @@ class Proof:
     covers: tuple[tuple[Condition, tuple[Cover, ...]], ...] = field(default=(), repr=False)
     components: tuple[type[Component], ...] = field(default=(), repr=False)
     """Those of a proof that a certificate can confirm: over shaft angles, not over time."""
+    run: tuple[float, float] = (0.0, 0.0)
+    """The shaft angles [rad], or without components the times [s], from the start of the run to its end."""
 
     def __bool__(self) -> bool:
         return self.status == PROVEN

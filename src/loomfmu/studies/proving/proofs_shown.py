@@ -10,7 +10,7 @@ from ...display.printed import say
 from ...errors import LoomfmuError
 from ...sweeps.varied import labelled
 from ...traces.plotting import COLOURS, figure, fixed_style
-from .proofs import OPEN, PROVEN, REFUTED, Proof, Proofs
+from .proofs import PROVEN, REFUTED, Proof, Proofs
 
 HEADINGS = ("", "claim", "how")
 
@@ -43,55 +43,50 @@ def _how(proof: Proof) -> str:
 
 
 WIDTH, HEIGHT, REST = 8.0, 2.4, 0.9  # of each claim, and of the rest [in]
-SURE, LEFT = "#dcefe3", COLOURS[1]
+SURE, EDGE, LEFT = "#dcefe3", "#8fc7a3", COLOURS[1]
 
 
 @fixed_style()
 def draw(found: Proofs) -> Any:
-    """A picture of what is left open: of each such claim the shaft angle and the first value that varies.
+    """A picture of what is proven over the shaft angle and the first value that varies, and what is left open.
 
-    Raises LoomfmuError if nothing is left open, or matplotlib is not installed.
+    Raises LoomfmuError if no claim could be proven in part, or matplotlib is not installed.
     """
-    claims = [each for each in found.claims if each.status == OPEN]
+    claims = [each for each in found.claims if each.covers]
     if not claims:
-        raise LoomfmuError("no claim is left open, so that there is nothing to draw")
+        raise LoomfmuError("nothing is proven of any claim, so that there is nothing to draw")
     drawn = figure((WIDTH, HEIGHT * len(claims) + REST))
     for axes, claim in zip(drawn.subplots(len(claims), squeeze=False)[:, 0], claims, strict=True):
-        _open_boxes(axes, found, claim)
+        _draw(axes, found, claim)
     drawn.suptitle(found.scene.title, fontsize=11)
-    drawn.legend(
-        *drawn.axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False
-    )
+    handles = drawn.axes[0].get_legend_handles_labels()
+    drawn.legend(*handles, loc="outside lower center", ncols=2, frameon=False)
     return drawn
 
 
-def _open_boxes(axes: Any, found: Proofs, claim: Proof) -> None:
-    """Draw the boxes that are left open of a claim, on those that are taken apart."""
+def _draw(axes: Any, found: Proofs, claim: Proof) -> None:
+    """Draw the boxes of a claim that are left open, on all of them."""
     from matplotlib.collections import PolyCollection
 
-    factors = [1.0 if not claim.components else math.radians(1.0), *(span.factor for span in found.over)]
     covers = [each for _condition, covers in claim.covers for each in covers]
-    first, last = (
-        end([each.whole[0] for each in covers if len(each.whole) == len(factors)] or [[0.0, 1.0]])
-        for end in (np.min, np.max)
-    )
-    for colour, label, boxes in (
-        (SURE, "proven", [each.whole for each in covers]),
-        (LEFT, "left open", [box for each in covers for box in each.open]),
+    turn = math.radians(1.0) if claim.components else 1.0
+    first = found.over[0] if found.over else None
+    for colour, edge, label, boxes in (
+        (SURE, EDGE, "proven", [each.whole for each in covers]),
+        (LEFT, LEFT, "left open", [box for each in covers for box in each.open]),
     ):
         corners = []
         for box in boxes:
-            whole = box if len(box) == len(factors) else np.concatenate([[[first, last]], box])
-            (left, right), (low, high) = (
-                whole[0] / factors[0],
-                whole[1] / factors[1] if found.over else (0.0, 1.0),
-            )
+            angles, *values = box if len(box) > len(found.over) else (np.array(claim.run), *box)
+            left, right = angles / turn
+            low, high = (0.0, 1.0) if first is None else values[0] / first.factor
             corners.append([(left, low), (right, low), (right, high), (left, high)])
-        axes.add_collection(PolyCollection(corners, facecolors=colour, edgecolors=colour, label=label))
+        axes.add_collection(PolyCollection(corners, facecolors=colour, edgecolors=edge, label=label))
     axes.autoscale()
+    axes.set_xlim(*(end / turn for end in claim.run))
     axes.set_title(claim.claim)
     axes.set_xlabel("shaft angle [deg]" if claim.components else "time [s]")
-    if found.over:
-        axes.set_ylabel(labelled(found.over[0].key, found.over[0].unit))
-    else:
+    if first is None:
         axes.set_yticks([])
+    else:
+        axes.set_ylabel(labelled(first.key, first.unit))

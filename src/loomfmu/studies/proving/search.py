@@ -55,7 +55,7 @@ class Search:
         share = math.prod(each.share for each in parts)
         boxes = sum(each.boxes for each in parts)
         left = [box for each in parts for box in each.open]
-        shown: tuple[Any, ...] = covers, () if chain.timed else chain.components
+        shown: tuple[Any, ...] = covers, () if chain.timed else chain.components, self._run_of(chain)
         if not left:
             return Proof(name, number, PROVEN, "", 1.0, boxes, {}, *shown)
         places = (self._middle(box) for box in left[:: math.ceil(len(left) / LOOKED_AT)])
@@ -74,7 +74,7 @@ class Search:
         except Unprovable:
             return None
         (condition,) = conditions if len(conditions) == 1 else (None,)
-        if not isinstance(condition, Always) or len(condition.any_of) > 1:
+        if not isinstance(condition, Always) or len(condition.any_of) > 1 or self._doubt(number):
             return None
         found = Lowest(chain, condition.any_of[0], self._scale(chain), width)
         for box in self._boxes(condition, chain):
