@@ -48,7 +48,7 @@ SURE, EDGE, LEFT = "#dcefe3", "#8fc7a3", COLOURS[1]
 
 @fixed_style()
 def draw(found: Proofs) -> Any:
-    """A picture of what is proven over the shaft angle and the first value that varies, and what is left open.
+    """A picture of what is proven, and what is not, over the shaft angle and the first value that varies.
 
     Raises LoomfmuError if no claim could be proven in part, or matplotlib is not installed.
     """
