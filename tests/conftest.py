@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 from browser import chromium, opened, tabs
+from claimed import looms
 from compiled import belt_in_c
 from hypothesis import settings
 from sharing import KEPT, compiled_once, fmu_cache, native_fmus, traces_checked_here
@@ -17,7 +18,8 @@ from sharing import KEPT, compiled_once, fmu_cache, native_fmus, traces_checked_
 from loomfmu.fmi.native.platforms import compiler
 
 # fixtures are named here alone: one that is imported into two files would be made twice in a process
-__all__ = ["belt_in_c", "chromium", "compiled_once", "fmu_cache", "opened", "tabs", "traces_checked_here"]
+__all__ = ["belt_in_c", "chromium", "compiled_once", "fmu_cache", "looms", "opened", "tabs"]
+__all__ += ["traces_checked_here"]
 
 collect_ignore_glob = ["*conftest.py"]  # they hold no doctests, and pytest takes them for one module
 

@@ -178,6 +178,7 @@ def test_the_guide_holds_the_belt_on_its_stroke(bow, bent):
     assert farthest(bow, guided=True, **PLAY)[-1] < 0.8 * held
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("bow", [own_bow, bow_of_span])
 def test_six_elements_suffice_for_the_stroke(bow):
     # nine, twelve and more give a half to a quarter of what these are off

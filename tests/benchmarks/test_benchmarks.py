@@ -155,6 +155,7 @@ def refuses(_directory: Path) -> None:
     raise ValueError("it is not to be had\nhere")
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("make", "said"), [(dies, "status 3"), (refuses, "it is not to be had$")])
 def test_a_configuration_that_cannot_be_run_is_named(make: Callable[[Path], None], said: str) -> None:
     with pytest.raises(Failed, match=said):

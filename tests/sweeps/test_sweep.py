@@ -180,6 +180,7 @@ def test_a_sweep_in_which_nothing_runs_is_still_a_table(capsys: pytest.CaptureFi
     assert pq.read_table("out/table.parquet").num_rows == 2
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("run_rows", "lost"), [(odd_tasks.deadly_rows, {1}), (odd_tasks.unlucky_rows, set())]
 )
