@@ -147,7 +147,7 @@ def _section(tracks: Tracks, shed: Shed) -> Figure:
     sketch.label(sketch.right, 0.0, "cloth", "end", (-4.0, -8.0))
     sketch.label(0.0, 0.0, "fell", "start", (5.0, 20.0))
     middle = tracks.add("warp.named", ["*", 0.8, f"{first.name}.eye"])
-    sketch.letter((-0.8 * shed.front, middle), "warp sheet", (24.0, -16.0))
+    sketch.letter((-0.8 * shed.front, middle), "warp sheet", (10.0, -18.0))
     end = shed.frames[-1]
     if end.damper:
         sketch.letter((last - 0.5 * shed.pitch, end.eye), "carrier", (-38.0, sketch.scale * end.bar + 6.0))
@@ -202,6 +202,7 @@ def _near(tracks: Tracks, shed: Shed) -> Figure:
         side = -shed.station - 0.7 * x
         for name in ("half_least", tracks.add("least_below", ["*", -1.0, "half_least"])):
             sketch.line((side, name), (-shed.station + 0.7 * x, name), role="path")
+        sketch.letter((side, "half_least"), "least opening", (44.0, -5.0))
         values.append(Value("least while the head is inside", "least_opening", "mm"))
         values += [Value("room left by the head", "room", "mm")] * shed.claimed
         note = (
