@@ -191,6 +191,20 @@ def test_the_weft_reaches_to_the_head_and_is_red_where_it_hangs_slack(tmp_path: 
     assert slack
 
 
+def test_the_weft_goes_with_the_giver_then_with_the_taker(
+    whole: Trace, pages: dict[str, Path], opened: Open
+) -> None:
+    page = opened(pages["whole"])
+    idle, stroke = 1000.0 * whole.parameter("belt.idle_travel"), 1000.0 * whole["weft.stroke"][0]
+    for degrees, drawn in ((120.0, "weft.travel"), (250.0, "weft_2.travel")):
+        seek(page, degrees)
+        travel = 1000.0 * np.interp(math.radians(degrees), whole.shaft_angle, whole[drawn])
+        _eyes, (end, _y) = points(page, "front-transfer", "sheet.weft")
+        # the taker grips it where the giver has brought it
+        tip = travel - idle if drawn == "weft.travel" else 2.0 * stroke - idle - travel
+        assert end == pytest.approx(tip, abs=2.0 * STEP)
+
+
 def test_both_heads_overlap_by_what_the_trace_has(whole: Trace, pages: dict[str, Path], opened: Open) -> None:
     page, lengths = opened(pages["whole"]), [whole.parameter(f"{each}.head_length") for each in PAIR]
     figure = page.locator("#motion-transfer-transfer")

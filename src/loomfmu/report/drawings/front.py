@@ -5,11 +5,13 @@ from dataclasses import dataclass
 from functools import partial
 
 from ..occasions import instances
+from ..rules import mm
 from .belt import Belt, reached, through_guide, wheel_centre, wheel_radius, wound
 from .drive import SECTOR, Drive, parts
 from .side import BOARD, RAIL, Shed, boarded
 from .sketch import Figure, Sketch, Value, title
 from .tracks import Tracks
+from .yarn import EYE
 
 WIDE = 1100.0  # px of the view
 SHOWN = 400.0  # mm: on both sides of the middle of the loom
@@ -94,6 +96,7 @@ def view(tracks: Tracks, pair: Pair, drives: Mapping[str, Drive], shed: Shed | N
     sketch = Sketch(tracks, ends[0].box[0], bottom - 24.0 * px, right, top + 24.0 * px, WIDE)
     if shed:
         _warp(sketch, shed, apart if taker else right + 100.0)
+    _weft(sketch, giver)
     ends[0].draw(sketch)
     if taker:
         with sketch.mirrored(apart):
@@ -129,6 +132,21 @@ def _warp(sketch: Sketch, shed: Shed, right: float) -> None:
     if boarded(shed):
         y = -shed.low(shed.station) - 2.0
         sketch.box(0.0, y - BOARD, right, y, role="body")
+
+
+def _weft(sketch: Sketch, giver: Belt) -> None:
+    """The weft from its eyes to the head that draws it, below the guide until it is in the shed."""
+    tracks, wires = sketch.tracks, sketch.tracks.trace.wires
+    for name in instances(tracks.trace, "WeftTension", "length"):
+        if f"{name}.travel" in wires and wires[f"{name}.travel"] == wires.get(f"{giver.name}.travel"):
+            supply, taken = (
+                1000.0 * tracks.parameter(f"{name}.{each}") for each in ("supply_length", "pick_up_travel")
+            )
+            brake = taken - giver.idle - supply
+            end = tracks.add(f"{name}.drawn", ["-", mm(f"{name}.length"), -brake])
+            start = brake + EYE * supply
+            sketch.line((start, -2.5 * GUIDE), (end, 0.0), role="sheet weft")
+            sketch.label(start, -2.5 * GUIDE, "weft", "end", (-4.0, 6.0))
 
 
 def _names(sketch: Sketch, ends: Sequence[End], apart: float, shed: Shed | None) -> None:
