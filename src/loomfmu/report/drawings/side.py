@@ -7,7 +7,6 @@ from ...traces.verdict import SHED_OPENING
 from ..occasions import instances
 from ..rules import Rule, mm
 from .belt import Belt
-from .frames import on_lift_of
 from .sketch import Figure, Sketch, Value
 from .tracks import Tracks
 
@@ -114,8 +113,8 @@ def shed_of(tracks: Tracks, belt: Belt | None) -> Shed | None:
 
 def _framed(tracks: Tracks, name: str, tall: float) -> Frame:
     """A frame with what hangs in it."""
-    damper = on_lift_of(tracks, name, "HealdDamper")
-    play = on_lift_of(tracks, damper or name, "HealdPlay", "carrier_lift" if damper else "lift")
+    damper = _on_lift_of(tracks, name, "HealdDamper")
+    play = _on_lift_of(tracks, damper or name, "HealdPlay", "carrier_lift" if damper else "lift")
     own: Rule = mm(["-", f"{name}.lift", ["*", 0.5, f"{name}.stroke"]])
     free = 1000.0 * tracks.parameter(f"{damper}.free_travel") + BAR if damper else 0.0
     eye = tracks.add(f"{name}.eye", ["-", own, ["*", -1000.0, f"{damper}.displacement"]] if damper else own)
@@ -123,6 +122,13 @@ def _framed(tracks: Tracks, name: str, tall: float) -> Frame:
     return Frame(
         name, damper, play, eye, tall - RAIL - free, 500.0 * tracks.parameter(f"{name}.stroke"), height
     )
+
+
+def _on_lift_of(tracks: Tracks, name: str, fmu: str, lift: str = "lift") -> str:
+    """An instance of an FMU with a displacement that is wired to a lift of another one; "" without one."""
+    wires = tracks.trace.wires
+    found = instances(tracks.trace, fmu, "displacement")
+    return next((each for each in found if wires.get(f"{each}.lift") == f"{name}.{lift}"), "")
 
 
 def _lengths(tracks: Tracks) -> tuple[float, float, bool]:
@@ -168,16 +174,18 @@ def _section(tracks: Tracks, shed: Shed) -> Figure:
         "side",
         "The loom from its side",
         f"Section of the loom at true scale: warp sheets, {names}{reed}{head}, fell and cloth.",
-        note=_notes(shed),
+        note=_notes(tracks, shed),
     )
 
 
-def _notes(shed: Shed) -> str:
+def _notes(tracks: Tracks, shed: Shed) -> str:
     """Return the assumptions of the section."""
     found = [
         "The model has the eyes of all frames at the distance of the first; the frames are drawn behind one"
         f" another. Heights of healds and frames{' and of the reed' * bool(shed.reed)} are assumed."
     ]
+    if instances(tracks.trace, "HealdDamper") and not tracks.trace.wires:  # in traces of older versions
+        found.append("The trace does not say which carrier is in which frame: none is drawn.")
     if not shed.published:
         found.append("So are the distances along the warp, which are not in the trace.")
     if boarded(shed):
