@@ -279,11 +279,14 @@ def test_the_elastica_is_that_of_the_physics() -> None:
 # ---- what is drawn
 
 
-def test_only_what_the_trace_records_is_drawn(demo: Trace, tmp_path: Path) -> None:
+def test_only_what_the_trace_records_is_drawn(demo: Trace, tmp_path: Path, opened: Open) -> None:
     assert "reed" not in made(demo).html
     trace = loomfmu.run(SIMS / "spline_cam.toml", output=tmp_path / "cam.h5").trace
     figures = re.findall(r'<figure id="motion-([^"]+)"', made(trace).html)
     assert figures == ["side", "shed"]
+    page = opened(report.write([trace], tmp_path / "cam.html"))
+    seek(page, 90.0)
+    assert page.inner_text("#motion-place").startswith("rev. 1, 90.0°")
 
 
 def test_drawings_do_not_hang_on_names(tmp_path: Path) -> None:
