@@ -73,8 +73,9 @@ def _compared(comparison: Comparison) -> Section:
 
 def sections(subject: Subject) -> list[Section]:
     """Return the sections that are not empty, in their order: the whole loom first, its details later."""
-    drawn = drawings(subject)
-    made = (*drawn[:-1], claims(subject), diagram(subject), *drawn[-1:], plots(subject), provenance(subject))
+    drawn = {each.name: each for each in drawings(subject)}
+    whole, details = drawn.get("loom"), drawn.get("motion")
+    made = (whole, claims(subject), diagram(subject), details, plots(subject), provenance(subject))
     return [section for section in made if section]
 
 

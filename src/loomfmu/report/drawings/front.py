@@ -5,11 +5,13 @@ from dataclasses import dataclass
 from functools import partial
 
 from ..occasions import instances
+from ..rules import mm
 from .belt import Belt, reached, through_guide, wheel_centre, wheel_radius, wound
 from .drive import SECTOR, Drive, parts
 from .side import BOARD, RAIL, Shed, boarded
 from .sketch import Figure, Sketch, Value, title
 from .tracks import Tracks
+from .yarn import EYE
 
 WIDE = 1100.0  # px of the view
 SHOWN = 400.0  # mm: on both sides of the middle of the loom
@@ -58,7 +60,7 @@ class End:
     def box(self) -> tuple[float, float, float]:
         """Left, bottom and top of what is drawn before the guide's end [mm]."""
         if not self.drive:
-            return self.centre - self.radius - 40.0, -60.0, 2.0 * self.radius
+            return self.centre - self.radius - 40.0, -60.0, max(2.0 * self.radius, GUIDE)
         (x, y), (left, bottom, _right, top) = self.drive.leaves, self.drive.corners
         return min(self.centre - x + left, self.centre - self.radius) - 40.0, bottom - y, top - y
 
@@ -94,6 +96,7 @@ def view(tracks: Tracks, pair: Pair, drives: Mapping[str, Drive], shed: Shed | N
     sketch = Sketch(tracks, ends[0].box[0], bottom - 24.0 * px, right, top + 24.0 * px, WIDE)
     if shed:
         _warp(sketch, shed, apart if taker else right + 100.0)
+    _weft(sketch, giver)
     ends[0].draw(sketch)
     if taker:
         with sketch.mirrored(apart):
@@ -131,6 +134,21 @@ def _warp(sketch: Sketch, shed: Shed, right: float) -> None:
         sketch.box(0.0, y - BOARD, right, y, role="body")
 
 
+def _weft(sketch: Sketch, giver: Belt) -> None:
+    """The weft from its eyes to the head that draws it, below the guide until it is in the shed."""
+    tracks, wires = sketch.tracks, sketch.tracks.trace.wires
+    for name in instances(tracks.trace, "WeftTension", "length"):
+        if f"{name}.travel" in wires and wires[f"{name}.travel"] == wires.get(f"{giver.name}.travel"):
+            supply, taken = (
+                1000.0 * tracks.parameter(f"{name}.{each}") for each in ("supply_length", "pick_up_travel")
+            )
+            brake = taken - giver.idle - supply
+            end = tracks.add(f"{name}.drawn", ["-", mm(f"{name}.length"), -brake])
+            start = brake + EYE * supply
+            sketch.line((start, -2.5 * GUIDE), (end, 0.0), role="sheet weft")
+            sketch.label(start, -2.5 * GUIDE, "weft", "end", (-4.0, 6.0))
+
+
 def _names(sketch: Sketch, ends: Sequence[End], apart: float, shed: Shed | None) -> None:
     """The names of the parts, outside the mirrored ones."""
     both, px = len(ends) > 1, 1.0 / sketch.scale
@@ -138,12 +156,15 @@ def _names(sketch: Sketch, ends: Sequence[End], apart: float, shed: Shed | None)
         at = partial(_across, apart if place else 0.0)
         outer, inner = ("end", "start") if place else ("start", "end")
         left, bottom, top = end.box
+        above = not end.drive or end.drive.side < 0.0  # of the guide: that is where the wheel is
+        far = top if above else bottom
         if end.radius:
-            sketch.label(at(end.centre), top, "rapier wheel", shift=(0.0, -8.0))
+            inwards = 0.0 if above else 0.5 * end.radius  # past the linkages' name
+            sketch.label(at(end.centre + inwards), far, "rapier wheel", shift=(0.0, -8.0 if above else 18.0))
         if end.drive:
             x, y = end.drive.leaves
             sector = end.centre - x + end.drive.hub[0] + 0.5 * SECTOR, end.drive.hub[1] - y
-            sketch.pointed((at(left + 56.0 * px), 0.78 * top), (at(sector[0]), sector[1]), "sector gear")
+            sketch.pointed((at(left + 56.0 * px), 0.78 * far), (at(sector[0]), sector[1]), "sector gear")
             sketch.label(at(left), bottom, "linkages", outer, (8.0 - 16.0 * place, 18.0))
         sketch.label(at(0.0), GUIDE, "guide", inner, (12.0 * place - 6.0, -8.0))
         sketch.label(at(end.centre), 0.0, "belt", outer, (8.0 - 16.0 * place, 18.0))
@@ -151,7 +172,7 @@ def _names(sketch: Sketch, ends: Sequence[End], apart: float, shed: Shed | None)
         if place:
             tip = sketch.tracks.add(f"{end.belt.name}.tip_across", ["-", apart, tip])
         who = ("taker" if place else "giver") if both else "rapier head"
-        sketch.letter((tip, -GUIDE), who, (-14.0 * (1 - 2 * place), 15.0))
+        sketch.letter((tip, -GUIDE), who, (30.0 * (2 * place - 1) if both else -30.0, 15.0))
     if shed:
         high = shed.half + shed.tall + RAIL
         sketch.label(0.3 * apart, high, "heald frames", shift=(0.0, -8.0))

@@ -8,7 +8,6 @@ from ..section import COARSEST, TURN, Section, Subject
 from ..templates import template
 from .belt import MOVING, between, shapes, tracked
 from .drive import drive, figure
-from .frames import frames
 from .front import pairs, transfer, view
 from .reed import beat_up
 from .side import shed_of, views
@@ -37,10 +36,10 @@ def sections(subject: Subject) -> list[Section]:
         return [Section("motion", DETAILS, template("motion.html.j2").render(coarse=coarse))]
     tracks = Tracks(subject, subject.start)
     whole, details = _figures(tracks)
-    if not details:
+    parts = [each for each in (("loom", WHOLE, whole), ("motion", DETAILS, details)) if each[2]]
+    if not parts:
         return []
     place = _place(subject, tracks.still)
-    parts = [("loom", WHOLE, whole)] * bool(whole) + [("motion", DETAILS, details)]
     pages = [
         template("motion.html.j2").render(
             coarse="", figures=figures, name=name, place="" if number else place
@@ -68,7 +67,6 @@ def _figures(tracks: Tracks) -> tuple[list[Figure], list[Figure]]:
         *(transfer(tracks, pair) for pair in met),
         *(between(tracks, belt) for belt in (*monitored, *moving)),
         *(yarn(tracks, name) for name in yarns),
-        frames(tracks),
         *(beat_up(tracks, name) for name in reeds),
     ]
     whole += [view(tracks, pair, drives, shed) for pair in met]

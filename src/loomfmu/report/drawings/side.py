@@ -7,7 +7,6 @@ from ...traces.verdict import SHED_OPENING
 from ..occasions import instances
 from ..rules import Rule, mm
 from .belt import Belt
-from .frames import on_lift_of
 from .sketch import Figure, Sketch, Value
 from .tracks import Tracks
 
@@ -114,8 +113,8 @@ def shed_of(tracks: Tracks, belt: Belt | None) -> Shed | None:
 
 def _framed(tracks: Tracks, name: str, tall: float) -> Frame:
     """A frame with what hangs in it."""
-    damper = on_lift_of(tracks, name, "HealdDamper")
-    play = on_lift_of(tracks, damper or name, "HealdPlay", "carrier_lift" if damper else "lift")
+    damper = _on_lift_of(tracks, name, "HealdDamper")
+    play = _on_lift_of(tracks, damper or name, "HealdPlay", "carrier_lift" if damper else "lift")
     own: Rule = mm(["-", f"{name}.lift", ["*", 0.5, f"{name}.stroke"]])
     free = 1000.0 * tracks.parameter(f"{damper}.free_travel") + BAR if damper else 0.0
     eye = tracks.add(f"{name}.eye", ["-", own, ["*", -1000.0, f"{damper}.displacement"]] if damper else own)
@@ -123,6 +122,13 @@ def _framed(tracks: Tracks, name: str, tall: float) -> Frame:
     return Frame(
         name, damper, play, eye, tall - RAIL - free, 500.0 * tracks.parameter(f"{name}.stroke"), height
     )
+
+
+def _on_lift_of(tracks: Tracks, name: str, fmu: str, lift: str = "lift") -> str:
+    """An instance of an FMU with a displacement that is wired to a lift of another one; "" without one."""
+    wires = tracks.trace.wires
+    found = instances(tracks.trace, fmu, "displacement")
+    return next((each for each in found if wires.get(f"{each}.lift") == f"{name}.{lift}"), "")
 
 
 def _lengths(tracks: Tracks) -> tuple[float, float, bool]:
@@ -147,7 +153,7 @@ def _section(tracks: Tracks, shed: Shed) -> Figure:
     sketch.label(sketch.right, 0.0, "cloth", "end", (-4.0, -8.0))
     sketch.label(0.0, 0.0, "fell", "start", (5.0, 20.0))
     middle = tracks.add("warp.named", ["*", 0.8, f"{first.name}.eye"])
-    sketch.letter((-0.8 * shed.front, middle), "warp sheet", (24.0, -16.0))
+    sketch.letter((-0.8 * shed.front, middle), "warp sheet", (10.0, -18.0))
     end = shed.frames[-1]
     if end.damper:
         sketch.letter((last - 0.5 * shed.pitch, end.eye), "carrier", (-38.0, sketch.scale * end.bar + 6.0))
@@ -168,16 +174,18 @@ def _section(tracks: Tracks, shed: Shed) -> Figure:
         "side",
         "The loom from its side",
         f"Section of the loom at true scale: warp sheets, {names}{reed}{head}, fell and cloth.",
-        note=_notes(shed),
+        note=_notes(tracks, shed),
     )
 
 
-def _notes(shed: Shed) -> str:
+def _notes(tracks: Tracks, shed: Shed) -> str:
     """Return the assumptions of the section."""
     found = [
         "The model has the eyes of all frames at the distance of the first; the frames are drawn behind one"
         f" another. Heights of healds and frames{' and of the reed' * bool(shed.reed)} are assumed."
     ]
+    if instances(tracks.trace, "HealdDamper") and not tracks.trace.wires:  # in traces of older versions
+        found.append("The trace does not say which carrier is in which frame: none is drawn.")
     if not shed.published:
         found.append("So are the distances along the warp, which are not in the trace.")
     if boarded(shed):
@@ -202,6 +210,7 @@ def _near(tracks: Tracks, shed: Shed) -> Figure:
         side = -shed.station - 0.7 * x
         for name in ("half_least", tracks.add("least_below", ["*", -1.0, "half_least"])):
             sketch.line((side, name), (-shed.station + 0.7 * x, name), role="path")
+        sketch.letter((side, "half_least"), "least opening", (44.0, -5.0))
         values.append(Value("least while the head is inside", "least_opening", "mm"))
         values += [Value("room left by the head", "room", "mm")] * shed.claimed
         note = (

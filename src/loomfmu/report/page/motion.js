@@ -1,6 +1,6 @@
 // Moves the parts of the drawings to where the keyframes have them at the cursor's position, or the run of the page.
 (() => {
-  const { first, span, tracks, bows, fixed } = loomfmu.data("motion"), { live } = loomfmu;
+  const { first, span, tracks, bows, fixed } = loomfmu.data(document.getElementById("motion") ? "motion" : "loom"), { live } = loomfmu;
   const roots = [...document.querySelectorAll(".motion")], missing = document.getElementById("motion-missing");
   for (const track of Object.values(tracks))
     if (track.frames) track.frames = track.frames.map(steps => { let sum = 0; return steps.map(step => sum += step); });
