@@ -324,11 +324,11 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert cli.main(["compare", a, b, "--report", str(page)]) == 1
     text = page.read_text()
     assert text.startswith("<!DOCTYPE html>")
-    first, rest = text.partition('<section id="comparison"')[2].split("</section>", 1)
+    first, _rest = text.partition('<section id="comparison"')[2].split("</section>", 1)
     assert (
         "1 of 2 signals" in first and "first to differ: belt.x" in first and ">largest difference<" in first
     )
-    assert "a.h5: the claim holds" in rest and "b.h5: the claim holds" in rest
+    assert "a.h5: the claim holds" in text and "b.h5: the claim holds" in text
 
 
 def test_memory_holds_a_few_columns_whatever_the_number_of_signals(tmp_path: Path) -> None:

@@ -78,7 +78,10 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     vary = ["shaft.speed=400rpm..800rpm", "belt.guide_clearance", "dobby.law"]
     output = tmp_path_factory.mktemp("page") / "demo.html"
     proven = ({0: PROVEN}, {"shaft.speed": (40.0, 65.0)})
-    return live_page.write(DEMO, vary, output, proven=proven, marks=marks)
+    warned: list[str] = []
+    path = live_page.write(DEMO, vary, output, warn=warned.append, proven=proven, marks=marks)
+    assert warned == ["dobby.law is not a real number: its limits are not marked"]
+    return path
 
 
 @pytest.fixture(scope="session")

@@ -146,6 +146,15 @@ def test_the_head_has_the_room_that_its_claim_judges(
     ]
 
 
+def test_the_names_of_the_sector_gears_are_beside_the_wheels(pages: dict[str, Path], opened: Open) -> None:
+    figure = opened(pages["whole"]).locator("#motion-front-transfer")
+    wheels = sorted(each.bounding_box()["x"] for each in figure.locator("circle.body").all())
+    width = figure.locator("circle.body").first.bounding_box()["width"]
+    names = [each.bounding_box() for each in figure.get_by_text("sector gear").all()]
+    left, right = sorted((name["x"], name["x"] + name["width"]) for name in names)
+    assert wheels[0] + width < left[0] and right[1] < wheels[-1]
+
+
 def test_the_belt_leaves_its_wheel_at_the_height_of_its_guide(pages: dict[str, Path], opened: Open) -> None:
     belts = opened(pages["whole"]).locator("#motion-front-transfer .belt")
     wheel, way = (

@@ -23,6 +23,7 @@ from .shared import (
     one_of,
     pairs,
     platforms,
+    print_unproven,
     print_verdicts,
     proofs_of,
     revolutions,
@@ -82,7 +83,7 @@ def _run_here(options: argparse.Namespace) -> int:
     )
     # before anything is printed: the reader of our output may have had enough
     page = _page_of(result.trace, result.path, options.force) if options.report else None
-    warn(result.warnings)
+    warn(dict.fromkeys((*result.warnings, *(proofs.warnings if proofs else ()))))
     _print_title(result)
     if result.chosen:
         say(result.chosen)
@@ -90,6 +91,7 @@ def _run_here(options: argparse.Namespace) -> int:
         heading = ["skipped:"] * (len(result.skipped) > 1)  # the last line counts what ran
         say(*heading, *(f"  {line}" for line in result.skipped))
     print_verdicts(result.claims)
+    print_unproven(proofs)
     scene = result.scene
     if scene.description and not scene.overrides:  # it is about the values that the scene has
         say(*scene.description.splitlines(), "")
@@ -217,5 +219,6 @@ def page(options: argparse.Namespace) -> int:
     written = write(
         options.scene, options.vary, options.output, given, options.force, warn, proven=proven, marks=marked
     )
+    print_unproven(proofs)
     say(f"written: {written}")
     return 0

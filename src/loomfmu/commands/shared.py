@@ -162,6 +162,14 @@ def proofs_of(scene: Any, over: Sequence[str], given: dict[str, Any] | None = No
     return prove(scene, over=over, set=given)
 
 
+def print_unproven(proofs: "Proofs | None") -> None:
+    """Print what --prove was to prove and could not."""
+    if proofs is not None:
+        from ..studies.proving.proofs_shown import show_unproven
+
+        show_unproven(proofs)
+
+
 def print_verdicts(verdicts: "Sequence[Verdict]") -> None:
     """The verdicts as a table."""
     if not verdicts:

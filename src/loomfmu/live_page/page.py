@@ -84,15 +84,18 @@ def write(
             data = _data(loaded, subject, rows, varied) | _stepping(whole, trace, rows)
             data["judging"] = claims(loaded, ends_of(loaded, varied), trace, started.claims, proven)
             data["wasm"] = b64encode(wasm).decode()
-            marked = {
-                each.key: marks(loaded, each) for each in varied if marks and not (each.choices or each.whole)
-            }
+            ranges = [each for each in varied if not (each.choices or each.whole)]
+            marked = {each.key: marks(loaded, each) for each in ranges if marks}
             controls = template("live.html.j2").render(knobs=varied, marked=marked)
             live = Section("live", "Values", controls, SCRIPTS, data)
             keys = [knob.key for knob in varied]
             called = f"{heading(loaded, keys)}; varied: {', '.join(keys)}"
             content = assembled(subject, [live, *sections(subject)], MARK, POLICY, called)
-    for warning in dict.fromkeys((*(doubt for knob in varied for doubt in knob.doubts), *started.warnings)):
+    bare = (
+        f"{each.key} is not a real number: its limits are not marked" for each in varied if each not in ranges
+    )
+    doubts = (doubt for knob in varied for doubt in knob.doubts)
+    for warning in dict.fromkeys((*doubts, *(bare if marks else ()), *started.warnings)):
         warn(warning)
     return write_file(path, content.encode(), PAGE, inputs, overwrite)
 

@@ -76,4 +76,4 @@ def _distance(verdict: Verdict) -> str:
     text = verdict.shown(verdict.distance)
     if text == "no value" or not verdict.bound:
         return text
-    return f"{text} ({verdict.relative_distance:+.1%})"
+    return f"{text} ({100.0 * verdict.relative_distance:+.1f} %)"

@@ -35,7 +35,7 @@ def test_ranges_are_proven_up_to_the_closed_form_and_fail_beyond(
     ("vary", "message"),
     [
         ("shaft.start_angle=0deg..10deg", "all shaft angles are proven"),
-        (["shaft.speed", "belt.guide_clearance=0.2mm..0.4mm"], "takes one variable"),
+        (["shaft.speed", "belt.guide_clearance=0.2mm..0.4mm"], "over one variable"),
     ],
 )
 def test_what_cannot_be_proven_over_is_refused(loom: Scene, vary: str | list[str], message: str) -> None:

@@ -113,8 +113,8 @@ def test_a_loom_that_turns_backwards_is_proven_at_its_own_angles(loom: Scene) ->
         ),
         ({"over": ["heald_1.pattern_length=2..4"]}, "is not a real number"),
         ({"claims": ["margins"]}, "the scene has no claim"),
-        ({"over": ["shaft.speed"]}, "over shaft.speed: a proof needs a range"),
-        ({"over": ["shaft.speed=300rpm..640"]}, "over shaft.speed: .* has no unit"),
+        ({"over": ["shaft.speed"]}, "a proof over shaft.speed needs a range"),
+        ({"over": ["shaft.speed=300rpm..640"]}, "a proof over shaft.speed: .* has no unit"),
         ({"over": "shaft.speed=640rpm..300rpm"}, "is empty"),
         ({"boxes": 0}, "boxes = 0 is not a number of boxes"),
         ({"over": ["shaft.start_angle=0deg..10deg"]}, "all shaft angles are proven"),
@@ -233,3 +233,7 @@ def test_a_run_notes_what_is_proven(
     (tmp_path / "loom.toml").write_text(loom.text)
     assert main(["run", str(tmp_path / "loom.toml"), "--prove", "shaft.speed=300rpm..640rpm"]) == 0
     assert text in " ".join(capsys.readouterr().out.split())
+    assert main(["run", str(tmp_path / "loom.toml"), "--prove", "shaft.speed=700rpm..800rpm"]) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    assert "not proven for shaft.speed from 700 to 800 rev/min:" in said
+    assert "refuted: margin (shaft.speed = " in said

@@ -164,7 +164,8 @@ def _names(sketch: Sketch, ends: Sequence[End], apart: float, shed: Shed | None)
         if end.drive:
             x, y = end.drive.leaves
             sector = end.centre - x + end.drive.hub[0] + 0.5 * SECTOR, end.drive.hub[1] - y
-            sketch.pointed((at(left + 56.0 * px), 0.78 * far), (at(sector[0]), sector[1]), "sector gear")
+            beside = end.centre + end.radius + 4.0 * px, 0.78 * far
+            sketch.pointed((at(beside[0]), beside[1]), (at(sector[0]), sector[1]), "sector gear", outer)
             sketch.label(at(left), bottom, "linkages", outer, (8.0 - 16.0 * place, 18.0))
         sketch.label(at(0.0), GUIDE, "guide", inner, (12.0 * place - 6.0, -8.0))
         sketch.label(at(end.centre), 0.0, "belt", outer, (8.0 - 16.0 * place, 18.0))

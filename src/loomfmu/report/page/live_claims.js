@@ -54,7 +54,7 @@ loomfmu.shownIn = ({ factor, unit }, value, digits = 7) =>
     worst.textContent = known ? shown(verdict.worst) : "–";
     bound.textContent = known ? shown(verdict.bound) : "–";
     distance.textContent = !known ? "–" : shown(gap)
-      + (verdict.bound && Number.isFinite(gap) ? ` (${share < 0 ? "" : "+"}${share.toFixed(1)}%)` : "");
+      + (verdict.bound && Number.isFinite(gap) ? ` (${share < 0 ? "" : "+"}${share.toFixed(1)} %)` : "");
     if (Number.isFinite(verdict.error)) distance.append(...line("small", `error ${loomfmu.shownIn(form, verdict.error, 1)}`));
     where.textContent = "–";
     if (at) {

@@ -296,7 +296,9 @@ def limit(
             " varied; vary a second one or leave rows out"
         )
     if prove and len(keys) > 1:
-        raise LoomfmuError("prove = True takes one variable; `loomfmu.prove` proves claims over several")
+        raise LoomfmuError(
+            "limits are proven over one variable; loomfmu prove --over proves claims over several"
+        )
     points, rows = whole_points(points), whole_points(ROWS if rows is None else rows, "rows", 2)
     with prepare(scene, set=set) as loom:
         protected(loom.scene)

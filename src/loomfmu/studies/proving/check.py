@@ -83,7 +83,7 @@ def check(path: str | Path) -> list[str]:
         RecursionError,
         OverflowError,
     ):
-        raise LoomfmuError(f"{path} is no certificate that `loomfmu prove --certificate` wrote") from None
+        raise LoomfmuError(f"{path} is not a certificate that `loomfmu prove --certificate` wrote") from None
 
 
 class _Check:

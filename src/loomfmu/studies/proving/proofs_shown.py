@@ -29,10 +29,18 @@ def show(found: Proofs) -> None:
         say("proven are the equations as they are written, in real numbers; not that they describe the loom")
 
 
+def show_unproven(found: Proofs) -> None:
+    """Print each claim that was not proven, and why."""
+    over = " and ".join(f"{span.key} from {span.text}" for span in found.over)
+    unproven = [f"  {proof.status}: {proof.claim} ({_how(proof)})" for proof in found.claims if not proof]
+    if unproven:
+        say(f"not proven for {over}:", *unproven)
+
+
 def _how(proof: Proof) -> str:
     """Say by how many boxes a claim was proven, where it was refuted, or why it was not proven."""
     if proof.status == PROVEN:
-        return f"by {proof.boxes} boxes"
+        return f"by {proof.boxes} box{'es' * (proof.boxes != 1)}"
     if proof.status == REFUTED:
         return (
             ", ".join(f"{key} = {value}" for key, value in proof.witness.items()) or "at the scene's values"

@@ -43,8 +43,8 @@ def prove(
     for text in texts:
         if isinstance(text, str) and "=" not in text:
             form = "write INSTANCE.VARIABLE=LOW..HIGH, such as shaft.speed=300rpm..640rpm"
-            raise LoomfmuError(f"over {text}: a proof needs a range; {form}")
-    sides = [span_of(asked.scene, text, option="over") for text in texts]
+            raise LoomfmuError(f"a proof over {text} needs a range; {form}")
+    sides = [span_of(asked.scene, text, option="a proof over") for text in texts]
     check_sides(asked.scene, sides)
     names = [name_of(table) for table in asked.scene.claims]
     for name in claims or ():
