@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 from scene_texts import claim
 
+from loomfmu.cosim.scenes.scene import parse
 from loomfmu.errors import LoomfmuError
 from loomfmu.studies.proving import certificate
 from loomfmu.studies.proving.proofs import Proofs
@@ -103,6 +104,14 @@ def test_a_forged_certificate_is_refused(
     exec(forgery, {"told": forged, "boxes": forged["claims"][0]["conditions"][0][0]})
     with pytest.raises(LoomfmuError, match=message):
         _check(forged, tmp_path)
+
+
+def test_a_claim_that_does_not_depend_on_what_varies_is_confirmed(loom: Any, tmp_path: Path) -> None:
+    claim = '[[claims]]\nname = "way"\nkind = "below"\nsignal = "weft.travel"\n'
+    claim += 'bound = 1.5\nwindow = ["0 deg", "100 deg"]\n'
+    found = prove(parse(loom.text + claim), over=["shaft.speed=590rpm..600rpm"], claims=["way"])
+    certificate.write(found, tmp_path / "proof.json")
+    assert len(check(tmp_path / "proof.json")) == 1
 
 
 def test_a_meeting_is_confirmed_at_the_angle_that_the_certificate_names(tmp_path: Path) -> None:

@@ -78,7 +78,9 @@ def decision(proven: NDArray[np.bool_], slopes: Floats, scale: Floats, boxes: Fl
     bisect a narrow side again leaves the slopes as they are.
     """
     faces = boxes.copy()
-    rises, falls = slopes[..., 0] >= 0.0, slopes[..., 1] <= 0.0
+    # along a side on which it does not depend, other arithmetic may find a slope of either sign
+    depends = (slopes != 0.0).any(axis=-1)
+    rises, falls = depends & (slopes[..., 0] >= 0.0), depends & (slopes[..., 1] <= 0.0)
     faces[..., 1] = np.where(rises, boxes[..., 0], boxes[..., 1])
     faces[..., 0] = np.where(falls & ~rises, boxes[..., 1], boxes[..., 0])
     widths = faces[..., 1] - faces[..., 0]
