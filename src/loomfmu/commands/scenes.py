@@ -6,7 +6,7 @@ import shutil
 import sys
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..display.printed import complain, say, warn
 from ..errors import LoomfmuError
@@ -83,7 +83,7 @@ def _run_here(options: argparse.Namespace) -> int:
     )
     # before anything is printed: the reader of our output may have had enough
     page = _page_of(result.trace, result.path, options.force) if options.report else None
-    warn(dict.fromkeys((*result.warnings, *(proofs.warnings if proofs else ()))))
+    warn(result.warnings)
     _print_title(result)
     if result.chosen:
         say(result.chosen)
@@ -207,7 +207,6 @@ def export(options: argparse.Namespace) -> int:
 def page(options: argparse.Namespace) -> int:
     """Write a scene as a page in which its FMUs run (HTML)."""
     from ..live_page import write
-    from ..studies.limits.marks import marks
 
     def warn(warning: str) -> None:
         complain(f"warning: {warning}")
@@ -215,7 +214,9 @@ def page(options: argparse.Namespace) -> int:
     given = pairs(options.overrides)
     proofs = proofs_of(options.scene, options.prove, given)
     proven = ({}, {}) if proofs is None else (proofs.remarks, proofs.ranges)
-    marked = marks if options.limits else None
+    marked: Any = None
+    if options.limits:  # the search loads much
+        from ..studies.limits.marks import marks as marked
     written = write(
         options.scene, options.vary, options.output, given, options.force, warn, proven=proven, marks=marked
     )

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from .. import units
 from ..display import printed
-from ..display.printed import say
+from ..display.printed import say, warn
 from ..errors import LoomfmuError
 
 if TYPE_CHECKING:
@@ -154,12 +154,14 @@ def revolutions(count: str) -> str:
 
 
 def proofs_of(scene: Any, over: Sequence[str], given: dict[str, Any] | None = None) -> "Proofs | None":
-    """Return the proofs of a scene over ranges, or None where none is given."""
+    """Return the proofs of a scene over ranges, or None where none is given; warn of the ranges."""
     if not over:
         return None
     from ..studies.proving.prove import prove
 
-    return prove(scene, over=over, set=given)
+    found = prove(scene, over=over, set=given)
+    warn(doubt for span in found.over for doubt in span.doubts)
+    return found
 
 
 def print_unproven(proofs: "Proofs | None") -> None:
