@@ -18,6 +18,7 @@ from .verdict import Verdict
 
 DOTS = 200  # of an inch, in all pictures
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#a8578a", "#e69f00", "#1a1a1a")  # of Okabe and Ito, and black
+HOLDS, HOLDS_LINE = "#dcefe3", "#8fc7a3"  # where claims hold: areas, lines
 DASHES = ("-", "--", "-.", ":")
 SIZE = (8.0, 4.0)  # of one picture [in]
 # of all pictures: the colours and lines of the pages

@@ -93,9 +93,9 @@ class Sometime:
         return (self.form,)
 
     def ranges(self, first: float, last: float) -> list[tuple[float, float]]:
-        """Return the ranges of the shaft angle between two angles, in each of which it is asked for [rad].
+        """Return the whole run between two angles, or its whole passes through the window [rad].
 
-        Raises Unprovable if there is none.
+        Raises Unprovable if there is no such pass.
         """
         found = Always((self.form,), self.window).ranges(first, last)
         whole = (self.window.width if self.window else last - first) * (1.0 - 1e-12)

@@ -13,7 +13,7 @@ from ...errors import LoomfmuError
 from ...files import Kind, check_target, write_file
 from ...report import pictures
 from ...sweeps.varied import labelled
-from ...traces.plotting import COLOURS, DASHES, figure, fixed_style
+from ...traces.plotting import COLOURS, DASHES, HOLDS, HOLDS_LINE, figure, fixed_style
 from ..span import Span
 from .results import (
     HEADINGS,
@@ -155,7 +155,6 @@ def _numbers(span: Span, *values: float) -> list[str]:
 
 SIZE = (8.0, 4.6)  # [in]
 FARTHEST = 1.5  # times the bound: distances beyond that are cut off, so that all claims can be seen near 0
-HOLDS = "#dcefe3"
 
 
 @fixed_style()
@@ -226,11 +225,11 @@ def _boundary(axes: Any, found: Boundary) -> None:
                 place,
                 stretch.low / first.factor,
                 stretch.high / first.factor,
-                color="#8fc7a3",
+                color=HOLDS_LINE,
                 linewidth=5,
                 zorder=0,
             )
-    axes.plot([], [], color="#8fc7a3", linewidth=5, label="all claims hold")
+    axes.plot([], [], color=HOLDS_LINE, linewidth=5, label="all claims hold")
     axes.set_xlim(second.low / second.factor, second.high / second.factor)
     axes.set_ylim(first.low / first.factor, first.high / first.factor)
     axes.set_xlabel(labelled(second.key, second.unit))

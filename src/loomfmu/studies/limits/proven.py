@@ -1,10 +1,10 @@
 """Limits proven: each range in which a claim holds, proven up to its ends, and runs that fail beyond."""
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from ...cosim.prepared import Prepared
+from ..proving.proofs import Proof
 from ..proving.prove import check_sides
 from ..proving.search import MOST, Search
 from ..span import Span
@@ -22,58 +22,53 @@ def proven(loom: Prepared, found: Limits) -> Limits:
     claims = []
     for number, claim in enumerate(found.claims):
         prover = _Prover(loom, found.span, number)
-        ranges = tuple(each for stretch in claim.ranges for each in prover.ranges(stretch, claim))
-        claims.append(replace(claim, proven=ranges, unproven=prover.reason))
+        parts = [prover.part(stretch, claim) for stretch in claim.ranges]
+        ranges = tuple(each for each in parts if isinstance(each, ProvenRange))
+        reason = next((each for each in parts if isinstance(each, str)), "")
+        claims.append(replace(claim, proven=ranges, unproven=reason))
     return replace(found, claims=tuple(claims), proved=True)
 
 
-@dataclass
+@dataclass(frozen=True)
 class _Prover:
     """Proves one claim, counted from 0, between values of the variable."""
 
     loom: Prepared
     span: Span
     number: int
-    reason: str = ""
-    """Why a range is not proven."""
 
-    def ranges(self, stretch: Stretch, claim: ClaimLimits) -> Iterator[ProvenRange]:
-        """Yield what is proven of a range: no more than one."""
+    def part(self, stretch: Stretch, claim: ClaimLimits) -> ProvenRange | str:
+        """Return what is proven of a range, or why nothing is."""
         limits = {each.value: each for each in claim.limits}
         below, above = limits.get(stretch.low), limits.get(stretch.high)
         away = AWAY * (stretch.high - stretch.low)
         inside = stretch.low + away * bool(below), stretch.high - away * bool(above)
-        if not self._proven(*inside, MOST):
-            return
+        proof = self._proof(*inside, MOST)
+        if not proof:
+            return proof.why or proof.status
         low, high = (
             end if limit is None else self._extended(end, limit.value)
             for end, limit in zip(inside, (below, above), strict=True)
         )
-        yield ProvenRange(low, high, self._failing(below, -1.0), self._failing(above, 1.0))
+        return ProvenRange(low, high, self._failing(below, -1.0), self._failing(above, 1.0))
 
-    def _proven(self, low: float, high: float, boxes: int) -> bool:
-        search = Search(self.loom, [replace(self.span, low=low, high=high)], boxes)
-        proof = search.proof(self.number, "")
-        if not proof:
-            self.reason = self.reason or (proof.why if proof.why else proof.status)
-        return bool(proof)
+    def _proof(self, low: float, high: float, boxes: int) -> Proof:
+        return Search(self.loom, [replace(self.span, low=low, high=high)], boxes).proof(self.number, "")
 
     def _extended(self, end: float, limit: float) -> float:
         """Return the value up to which it is proven, from an end of the proven range towards a limit."""
-        reason = self.reason
         while abs(limit - end) > CLOSEST * abs(limit):
             further = limit + CLOSER * (end - limit)
-            if not self._proven(min(end, further), max(end, further), FEW):
+            if not self._proof(min(end, further), max(end, further), FEW):
                 break
             end = further
-        self.reason = reason
         return end
 
     def _failing(self, limit: Limit | None, direction: float) -> float:
         """Return a value near beyond a limit at which a run fails, NaN where there is none."""
         if limit is None:
             return math.nan
-        search = Search(self.loom, [self.span], FEW)
+        search = Search(self.loom, [self.span])
         ends = (limit.low, limit.high)
         value = max(ends) if direction > 0.0 else min(ends)
         step = direction * max(limit.error if limit.error < math.inf else 0.0, 1e-10 * abs(limit.value))

@@ -100,7 +100,7 @@ class Limits:
     runs: int
     warnings: tuple[str, ...] = ()
     proved: bool = False
-    """Whether proofs were asked for."""
+    """True if proofs were asked for."""
 
     def __bool__(self) -> bool:
         return bool(self.ranges)

@@ -53,5 +53,5 @@ def write(proofs: Proofs, path: Path, inputs: Sequence[Path] = (), overwrite: bo
 
 
 def _told(condition: Condition, cover: Cover) -> list[Any]:
-    """Return a cover for JSON; that of what is asked for at one angle begins with the angle."""
+    """Return a cover for JSON. Where one angle is enough, that angle comes first."""
     return [float(cover.whole[0, 0]).hex(), *cover.tree] if isinstance(condition, Sometime) else cover.tree

@@ -10,6 +10,7 @@ from .chain import middles
 from .spans import Floats
 
 MOST = 4096  # boxes that are looked at together
+LEAST = 2.0**-40
 DECIDED = -1  # in a tree: a box that is not bisected
 
 
@@ -41,11 +42,6 @@ class Cover:
     boxes: int = 0
     share: float = 0.0
 
-    @property
-    def proven(self) -> bool:
-        """Return whether all of the box is proven."""
-        return not self.open
-
 
 def face_code(sides: int, side: int, upper: bool) -> int:
     """Return what says in a tree that one end of a side is enough."""
@@ -60,13 +56,13 @@ class _Node:
     halves: tuple["_Node", ...] = ()
 
 
-def cover(whole: Floats, decide: Callable[[Floats], Decision], most: int, least: float = 2.0**-40) -> Cover:
+def cover(whole: Floats, decide: Callable[[Floats], Decision], most: int) -> Cover:
     """Take a box apart until every part is proven, or so many boxes were looked at.
 
-    A side is bisected no further than to the share `least` of its width.
+    A side is bisected no further than to the share `LEAST` of its width.
     """
     found, root = Cover(whole), _Node()
-    narrowest = least * np.maximum(whole[:, 1] - whole[:, 0], np.finfo(float).tiny)
+    narrowest = LEAST * np.maximum(whole[:, 1] - whole[:, 0], np.finfo(float).tiny)
     waiting, nodes, shares = whole[None], [root], np.ones(1)
     while len(waiting):
         now, waiting = waiting[:MOST], waiting[MOST:]

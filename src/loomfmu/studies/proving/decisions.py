@@ -1,14 +1,14 @@
 """Decisions on boxes: those all over which a condition is sure to hold, and how to bisect the others."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...cosim.claims.conditions import FALLS, IN, OUT, RISES, UNKNOWN, Always, Spans, Sum
+from ...cosim.claims.conditions import FALLS, IN, OUT, RISES, UNKNOWN, Spans, Sum
 from .chain import Chain, Number
 from .cover import Decision
 from .spans import Floats
@@ -24,19 +24,14 @@ def value_of(form: Sum, chain: Chain, numbers: Mapping[str, Number], boxes: Floa
     return total.narrowed(boxes)
 
 
-def decide_always(chain: Chain, condition: Always, scale: Floats, boxes: Floats) -> Decision:
+def decide_any(chain: Chain, forms: Sequence[Sum], scale: Floats, boxes: Floats) -> Decision:
     """Return the boxes all over which one of the forms is not negative."""
     numbers = chain.numbers(boxes)
-    forms = [value_of(form, chain, numbers, boxes) for form in condition.any_of]
-    low = np.max([each.values[:, 0] for each in forms], axis=0)
-    slopes = np.stack(
-        [
-            np.min([each.slopes[..., 0] for each in forms], axis=0),
-            np.max([each.slopes[..., 1] for each in forms], axis=0),
-        ],
-        axis=-1,
-    )
-    return decision(low >= 0.0, slopes, scale, boxes)
+    found = [value_of(form, chain, numbers, boxes) for form in forms]
+    low = np.max([each.values[:, 0] for each in found], axis=0)
+    slopes = np.stack([each.slopes for each in found])
+    joint = np.stack([slopes[..., 0].min(axis=0), slopes[..., 1].max(axis=0)], axis=-1)
+    return decision(low >= 0.0, joint, scale, boxes)
 
 
 def likely(chain: Chain, form: Sum, angles: tuple[float, float], box: Floats) -> float:

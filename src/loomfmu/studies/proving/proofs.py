@@ -51,10 +51,14 @@ class Proofs:
         return bool(self.claims) and all(self.claims)
 
     @property
+    def sides(self) -> list[str]:
+        """Return what varies and its range, in words."""
+        return [f"{span.key} from {span.text}" for span in self.over]
+
+    @property
     def remarks(self) -> dict[int, str]:
         """Return what to say of each claim that is proven, by its number in the scene."""
-        ranges = (f"{span.key} from {span.text}" for span in self.over)
-        text = f"proven for {listed(('all shaft angles', *ranges))}"
+        text = f"proven for {listed(('all shaft angles', *self.sides))}"
         return {each.number: text for each in self.claims if each}
 
     @property

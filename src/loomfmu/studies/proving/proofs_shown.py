@@ -9,7 +9,7 @@ from ...display import printed
 from ...display.printed import say
 from ...errors import LoomfmuError
 from ...sweeps.varied import labelled
-from ...traces.plotting import COLOURS, figure, fixed_style
+from ...traces.plotting import COLOURS, HOLDS, HOLDS_LINE, figure, fixed_style
 from .proofs import PROVEN, REFUTED, Proof, Proofs
 
 HEADINGS = ("", "claim", "how")
@@ -17,7 +17,7 @@ HEADINGS = ("", "claim", "how")
 
 def show(found: Proofs) -> None:
     """Print what was proven of every claim."""
-    over = ", ".join(f"{span.key} from {span.text}" for span in found.over)
+    over = ", ".join(found.sides)
     revolutions = f"{found.scene.periods:g} revolution{'s' * (found.scene.periods != 1)}"
     say(
         f"{found.scene.title}: for all shaft angles of {revolutions}"
@@ -31,10 +31,9 @@ def show(found: Proofs) -> None:
 
 def show_unproven(found: Proofs) -> None:
     """Print each claim that was not proven, and why."""
-    over = " and ".join(f"{span.key} from {span.text}" for span in found.over)
     unproven = [f"  {proof.status}: {proof.claim} ({_how(proof)})" for proof in found.claims if not proof]
     if unproven:
-        say(f"not proven for {over}:", *unproven)
+        say(f"not proven for {' and '.join(found.sides)}:", *unproven)
 
 
 def _how(proof: Proof) -> str:
@@ -51,7 +50,6 @@ def _how(proof: Proof) -> str:
 
 
 WIDTH, HEIGHT, REST = 8.0, 2.4, 0.9  # of each claim, and of the rest [in]
-SURE, EDGE, LEFT = "#dcefe3", "#8fc7a3", COLOURS[1]
 
 
 @fixed_style()
@@ -80,8 +78,8 @@ def _draw(axes: Any, found: Proofs, claim: Proof) -> None:
     turn = math.radians(1.0) if claim.components else 1.0
     first = found.over[0] if found.over else None
     for colour, edge, label, boxes in (
-        (SURE, EDGE, "proven", [each.whole for each in covers]),
-        (LEFT, LEFT, "left open", [box for each in covers for box in each.open]),
+        (HOLDS, HOLDS_LINE, "proven", [each.whole for each in covers]),
+        (COLOURS[1], COLOURS[1], "left open", [box for each in covers for box in each.open]),
     ):
         corners = []
         for box in boxes:

@@ -16,7 +16,7 @@ from ...cosim.results import Evaluation
 from ..span import Span
 from .chain import SHAFT, START, Chain
 from .cover import Cover, cover
-from .decisions import Lowest, decide_always, decide_spans, likely
+from .decisions import Lowest, decide_any, decide_spans, likely
 from .proofs import IMPOSSIBLE, OPEN, PROVEN, REFUTED, Proof
 from .spans import Ends, Floats
 
@@ -136,14 +136,13 @@ class Search:
         if isinstance(condition, Spans):
             decide = partial(decide_spans, chain, condition, self._run_of(chain))
             return (cover(self._box, decide, self._most // 64),)
-        always = Always(condition.forms)
-        decide = partial(decide_always, chain, always, self._scale(chain))
+        decide = partial(decide_any, chain, condition.forms, self._scale(chain))
         return tuple(cover(box, decide, self._most) for box in self._boxes(condition, chain))
 
     def _boxes(self, condition: Always | Sometime, chain: Chain) -> list[Floats]:
         """Return the box with all ranges of the angle, or of the time, that a condition is about.
 
-        Where something is asked for at one angle of a range, it is the likeliest.
+        Where one angle of a range is enough, the range is the one at which the condition most likely holds.
         """
         first, last = self._run_of(chain)
         ranges = [(first, last)] if chain.timed else condition.ranges(first, last)
