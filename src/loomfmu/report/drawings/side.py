@@ -193,7 +193,7 @@ def _notes(tracks: Tracks, shed: Shed) -> str:
     if shed.tip and shed.reed and shed.behind[1] < shed.station:
         found.append(
             f"The head is {shed.station:.3g} mm behind the fell, where warp_ratio puts it. While it is in the"
-            f" shed, the reed comes as near to the fell as {shed.behind[1]:.3g} mm, past the head's place."
+            f" shed, the reed comes to within {shed.behind[1]:.3g} mm of the fell, which is beyond the head."
         )
     return " ".join(found)
 
