@@ -222,7 +222,7 @@ def _of_straight(ends: Sequence[End]) -> str:
     """The note on numbers of belts that buckle."""
     if not any(end.belt.slope for end in ends):
         return ""
-    return " The numbers are for straight belts; where a belt bends, its head is drawn that much farther back."
+    return " Numbers are those of straight belts; where a belt bends, its head is drawn farther back."
 
 
 def _unbent(tracks: Tracks, belt: Belt) -> str:
