@@ -154,13 +154,20 @@ def revolutions(count: str) -> str:
 
 
 def proofs_of(scene: Any, over: Sequence[str], given: dict[str, Any] | None = None) -> "Proofs | None":
-    """Return the proofs of a scene over ranges, or None where none is given; warn of the ranges."""
+    """Return the proofs of a scene over ranges, or None where none is given; warn of the ranges.
+
+    Raises LoomfmuError if the scene's own values are not within the ranges: its verdicts are not proven then.
+    """
     if not over:
         return None
     from ..studies.proving.prove import prove
 
     found = prove(scene, over=over, set=given)
     warn(doubt for span in found.over for doubt in span.doubts)
+    for span in found.over:
+        if not span.low <= span.value <= span.high:
+            own = f"{span.show(span.value)}, the scene's value"
+            raise LoomfmuError(f"--prove {span.key}: {own}, is outside the range from {span.text}")
     return found
 
 

@@ -159,7 +159,7 @@ def prove(options: argparse.Namespace) -> int:
         given = ("over", "claim", "certificate", "picture", "overrides", "boxes")
         if any(getattr(options, name) for name in given):
             raise LoomfmuError("--check takes a certificate alone: the ranges and the claims are in it")
-        say(*check(options.check))
+        say(*check(options.check, progress=True))
         return 0
     from ..report import pictures
     from ..studies.proving import certificate

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from ... import units
 from ...components import COMPONENTS
 from ...components.shaft_driven import FOLLOWING, ShaftDriven
 from ...cosim.claims.claims import name_of
@@ -39,6 +40,8 @@ from ...cosim.scenes.instances import Instance
 from ...cosim.scenes.scene import Scene, differing
 from ...cosim.scenes.settings import texts_in, toml
 from ...declaring.variables import MOTION, variables_of
+from ...display.progress import Advance
+from ...display.progress import progress as progress_bar
 from ...errors import LoomfmuError, shown
 from ...files import text_of
 from ...fmi import source
@@ -60,8 +63,11 @@ class Refused(LoomfmuError):
     """A certificate that proves less than it says."""
 
 
-def check(path: str | Path) -> list[str]:
-    """Return a line for each claim that a certificate proves, confirmed. Raises Refused, a LoomfmuError."""
+def check(path: str | Path, *, progress: bool = False) -> list[str]:
+    """Return a line for each claim that a certificate proves, confirmed. Raises Refused, a LoomfmuError.
+
+    `progress` shows how many of its boxes are confirmed, which takes some 10 ms each.
+    """
     try:
         told = json.loads(text_of(Path(path)))
         if told["format"] != FORMAT:
@@ -71,7 +77,9 @@ def check(path: str | Path) -> list[str]:
             for name, text in told["texts"].items():
                 (Path(folder) / name).parent.mkdir(parents=True, exist_ok=True)
                 (Path(folder) / name).write_text(text, encoding="utf-8")
-            return _Check(told, folder).lines
+            trees = (tree for claim in told["claims"] for covers in claim["conditions"] for tree in covers)
+            with progress_bar("boxes", sum(map(len, trees)), wanted=progress) as advance:
+                return _Check(told, folder, advance).lines
     except (Refused, Unprovable) as error:
         raise Refused(f"{path}: {error}") from None
     except (
@@ -87,7 +95,8 @@ def check(path: str | Path) -> list[str]:
 
 
 class _Check:
-    def __init__(self, told: dict[str, Any], folder: str):
+    def __init__(self, told: dict[str, Any], folder: str, advance: Advance):
+        self._advance = advance
         scene = scenes.parse(told["scene"], told["name"], told["overrides"], folder)
         self._asked = requested(scene, None, "native")
         self._scene = scene = self._asked.scene
@@ -110,7 +119,9 @@ class _Check:
         self._equations = told["equations"]
         within = f" of {scene.periods:g} revolution{'s' * (scene.periods != 1)}"
         for (key, _ends), (low, high) in zip(told["over"].items(), self._ends, strict=True):
-            within += f", {key} from {low:.9g} to {high:.9g} (SI)"
+            about = varied(scene, key)
+            first, last = (units.exact(end, about.display) for end in (low, high))
+            within += f", {key} from {first} to {last}" + f" {about.shown_unit}" * (about.shown_unit != "1")
         names = [name_of(table) for table in scene.claims]
         self.lines: list[str] = []
         if not told["claims"] or any(names.count(claim["name"]) != 1 for claim in told["claims"]):
@@ -140,7 +151,8 @@ class _Check:
         if isinstance(condition, Spans):
             (tree,) = covers
             lasting = partial(_spans_last, chain, condition, (start, last))
-            _confirm(name, tuple(self._ends), iter(tree), lasting, lambda _box, _faces: False)
+            codes = self._codes(tree)
+            _confirm(name, tuple(self._ends), codes, lasting, lambda _box, _faces: False)
             return
         scale = [FINE, *(high - low for low, high in self._ends)]
         holds, rises = (
@@ -149,14 +161,20 @@ class _Check:
         ranges = condition.ranges(start, last)
         if len(ranges) != len(covers):
             raise Refused(f"{name}: {len(covers)} ranges of the shaft angle, not {len(ranges)}")
-        for (low, high), codes in zip(ranges, covers, strict=True):
-            tree = iter(codes)
+        for (low, high), cover in zip(ranges, covers, strict=True):
+            tree = self._codes(cover)
             if isinstance(condition, Sometime):
                 angle = float.fromhex(next(tree))
                 if not low <= angle <= high:
                     raise Refused(f"{name}: {angle} rad is not within {low} to {high}")
                 low = high = angle
             _confirm(name, ((low, high), *self._ends), tree, holds, rises)
+
+    def _codes(self, tree: Sequence[Any]) -> Iterator[Any]:
+        """Yield what a tree says, and count it."""
+        for code in tree:
+            self._advance(1)
+            yield code
 
 
 def _check_harmless(told: dict[str, Any]) -> None:
