@@ -118,6 +118,10 @@ def test_a_loom_that_turns_backwards_is_proven_at_its_own_angles(loom: Scene) ->
         ({"over": "shaft.speed=640rpm..300rpm"}, "is empty"),
         ({"boxes": 0}, "boxes = 0 is not a number of boxes"),
         ({"over": ["shaft.start_angle=0deg..10deg"]}, "all shaft angles are proven"),
+        (
+            {"over": ["heald.stroke=97mm..99mm"], "set": {"heald_2.stroke": "105 mm"}},
+            "heald_2.stroke keeps a value of its own",
+        ),
         ({"over": ["belt.head_mass=1g..2g", "belt.head_mass=2g..3g"]}, "both set"),
     ],
 )
