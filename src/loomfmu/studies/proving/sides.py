@@ -1,4 +1,4 @@
-"""What may vary in a proof. The prover and the check of its certificates read it alike."""
+"""The sides of a proof's box: what may vary. The prover and the check of its certificates read it alike."""
 
 from collections.abc import Iterable
 
