@@ -61,6 +61,11 @@ class Shed:
         return min(BEHIND, DEEPEST / len(self.frames))
 
     @property
+    def high(self) -> float:
+        """The top of a raised frame."""
+        return self.half + self.tall + RAIL
+
+    @property
     def station(self) -> float:
         """Distance of the head from the fell."""
         return self.ratio * self.front
@@ -150,8 +155,7 @@ def _lengths(tracks: Tracks) -> tuple[float, float, bool]:
 def _section(tracks: Tracks, shed: Shed) -> Figure:
     """The section from the healds to the cloth."""
     last = -shed.front - shed.pitch * (len(shed.frames) - 1)
-    high = shed.half + shed.tall + RAIL
-    sketch = Sketch(tracks, last - 85.0, -high - 8.0, 90.0, high + 22.0, WIDE)
+    sketch = Sketch(tracks, last - 85.0, -shed.high - 8.0, 90.0, shed.high + 22.0, WIDE)
     _parts(sketch, shed)
     first = shed.frames[0]
     sketch.label(0.5 * (last - shed.front), sketch.top, "heald frames", shift=(0.0, 18.0))
