@@ -118,7 +118,7 @@ def checked_claims(scene: Scene) -> Requested:
     known = {name: each.fmu.facts for name, each in scene.instances.items() if each.fmu.facts}
     for table, claim in zip(scene.claims, requested.claims, strict=True):
         where = place_of(table)
-        for angle in angles_in(table) if "shaft" not in scene.instances else ():
+        for angle in angles_in(claim, table) if "shaft" not in scene.instances else ():
             raise LoomfmuError(f"{where}: {angle} is a shaft angle, but the scene has no shaft")
         for signal in claim.signals(requested):
             port = output_port(scene, signal, where)
@@ -131,7 +131,7 @@ def checked_claims(scene: Scene) -> Requested:
             if isinstance(claim, Bounded) and alike and not isinstance(claim.bound, str):
                 notes.append(port.doubt(table["bound"], f"{where} of {signal}: bound"))
         check_bounds(requested, scene, [claim])
-        notes += doubts(table)
+        notes += doubts(claim, table)
     requested.scene = replace(scene, notes=tuple(dict.fromkeys(note for note in notes if note)))
     return requested
 

@@ -6,15 +6,18 @@ holds: `assert judge(...)`. Scenes state the same as `[[claims]]` tables, with u
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import MISSING, fields
+from pathlib import Path
 from typing import Any
 
 from ...errors import LoomfmuError, shown, suggestion
+from ...own import load
 from ...traces import Verdict
 from ..standard import standard
 from . import expressions
 from .claim import Claim
 from .expression_claims import of_expression
 from .expressions import Expression, is_expression
+from .own_claims import own_claim
 
 
 def kinds() -> Mapping[str, type[Claim]]:
@@ -23,21 +26,22 @@ def kinds() -> Mapping[str, type[Claim]]:
     return Claim.kinds
 
 
-def read(table: Mapping[str, Any], unit_of: Callable[[str], str]) -> Claim:
+def read(table: Mapping[str, Any], unit_of: Callable[[str], str], directory: Path | None = None) -> Claim:
     """The claim that a table of a scene states. `unit_of` gives the unit of a signal.
+
+    A kind may be a Python file, from the scene's `directory`; it is run.
 
     Raises:
         LoomfmuError: what is unknown, missing, or cannot be read or compared
     """
-    kind = table.get("kind")
-    if not isinstance(kind, str) or kind not in kinds():
+    kind, where = table.get("kind"), place_of(table)
+    if not isinstance(kind, str) or not (load.is_file(kind) or kind in kinds()):
         raise LoomfmuError(f"claim kind = {kind!r} is unknown{suggestion(str(kind), kinds())}")
-    where = place_of(table)
-    arguments = kinds()[kind].declared()
+    chosen = own_claim(kind, directory, where) if load.is_file(kind) else kinds()[kind]
+    arguments, values = chosen.declared(), dict[str, Any]()
     for name in table:
         if name not in arguments and name != "kind":
             raise LoomfmuError(f"{where} has no {name!r}{suggestion(name, arguments)}")
-    chosen, values = kinds()[kind], dict[str, Any]()
     if kind in of_expression and is_expression(str(table.get("signal", ""))):
         signal = expressions.read(table["signal"], unit_of, f"{where}: signal")
         table, chosen = {**table, "signal": signal}, of_expression[kind]
@@ -71,14 +75,14 @@ def called(table: Mapping[str, Any], verdict: Verdict) -> str:
     return str(table.get("name") or f"{verdict.claim} ({verdict.signal})")
 
 
-def angles_in(table: Mapping[str, Any]) -> list[str]:
+def angles_in(claim: Claim, table: Mapping[str, Any]) -> list[str]:
     """The arguments in a claim's table that are shaft angles."""
-    arguments = kinds()[table["kind"]].declared()
+    arguments = claim.declared()
     return [name for name in table if name != "kind" and arguments[name].unit == "rad"]
 
 
-def doubts(table: Mapping[str, Any]) -> Iterator[str]:
+def doubts(claim: Claim, table: Mapping[str, Any]) -> Iterator[str]:
     """Numbers of a claim's table that were probably meant in another unit."""
-    for name, declared in kinds()[table["kind"]].declared().items():
+    for name, declared in claim.declared().items():
         if name in table:
             yield from declared.doubts(table[name], f"{place_of(table)}: {name}")
