@@ -24,9 +24,8 @@ UNITS = {"a.x": "m", "a.v": "m/s", "b.x": "m", "b.v": "m/s", "c.force": "N", "c.
 UNITS |= {"s.torque": "N.m", "s.velocity": "rad/s", "s.angle": "rad"}
 
 
-def run(**more: Any) -> Recording:
+def run(t: np.ndarray = TIME, **more: Any) -> Recording:
     """x of a is cos t, that of b 2 + sin(2 t), both with two rates; c has none."""
-    t = TIME
     signals = {
         "a.x": ("m", np.cos(t), {"rate": "v"}),
         "a.v": ("m/s", -np.sin(t), {"rate": "w"}),
@@ -128,10 +127,11 @@ ANY = st.recursive(
 )
 
 
-def evaluated(text: str, t: float) -> Any:
-    """The value at a time by Python itself."""
+def evaluated(text: str, t: Any) -> Any:
+    """The value at a time, or at several, by Python itself."""
     plain = text.replace("a.x / (1 m)", "a").replace("b.x / (1 m)", "b")
-    return eval(plain, {"a": np.cos(t), "b": 2.0 + np.sin(2.0 * t)})
+    names = {"a": np.cos(t), "b": 2.0 + np.sin(2.0 * t), "min": np.minimum, "max": np.maximum}
+    return eval(plain, names)
 
 
 @given(ANY)
@@ -168,6 +168,19 @@ def test_its_cases_keep_a_bound_together_where_it_does(text: str, sense: int) ->
 
 
 # ---- verdicts
+
+
+@given(ANY, st.integers(80, 300), st.floats(-1.0, 1.0), st.sampled_from(["above", "below"]))
+def test_a_verdict_is_true_between_the_samples_too(text: str, steps: int, away: float, kind: Any) -> None:
+    fine = evaluated(text, np.linspace(0.0, 2.0 * math.pi, 20_001))
+    worst = float(np.min(fine) if kind == "above" else np.max(fine))
+    scale = float(np.ptp(fine)) + 1e-6
+    bound = worst + away**5 * scale  # most of them near the worst value
+    found = judge(run(np.linspace(0.0, 2.0 * math.pi, steps + 1)), kind=kind, signal=text, bound=bound)
+    keeps = worst >= bound if kind == "above" else worst <= bound
+    # 20,000 samples miss an extreme by some 1e-7 of the values
+    near = abs(worst - bound) < 1e-6 * (scale + abs(worst))
+    assert near or found.word == "undecided" or bool(found) == keeps
 
 
 def test_a_difference_is_judged_between_the_samples_as_a_recorded_one() -> None:
