@@ -103,10 +103,10 @@ def vary(about: str, required: bool = False) -> Argument:
     return argument("--vary", metavar, about, action="append", default=[], required=required)
 
 
-def place(name: str) -> tuple[Argument, ...]:
-    """The arguments that say where many runs go and which processes make them."""
+def place(name: str, file: str = "") -> tuple[Argument, ...]:
+    """The arguments that say where many runs go, perhaps into a file too, and which processes make them."""
     return (
-        argument("--output", "DIR", f"folder for the results; results/{name} by default"),
+        argument("--output", "DIR", f"folder for the results; results/{name} by default{file}"),
         argument("--processes", "N", "worker processes on this machine; one per core by default", type=int),
         argument("--scheduler", "ADDRESS", "run on a dask cluster, such as tcp://host:8786"),
         flag("--restart", "discard earlier results in DIR and run everything again"),
