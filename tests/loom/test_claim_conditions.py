@@ -1,6 +1,8 @@
 """The condition that a claim states of all shaft angles says what the claim says of a run."""
 
 import math
+from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -36,6 +38,8 @@ ANGLES = 7201
         ("bound", {"kind": "lowest_margin"}),
         ("bound", {"kind": "below", "signal": "weft.travel", "window": ["30 deg", "100 deg"]}),
         ("bound", {"kind": "above", "signal": "weft.travel", "window": ["60 deg", "150 deg"]}),
+        ("bound", {"kind": "below", "signal": "abs(2 * heald_1.lift - heald_2.lift - 10 mm)"}),
+        ("bound", {"kind": "above", "signal": "min(weft.travel, -3 * heald_1.lift)"}),
         ("at_least", {"kind": "dwell", "heald": "heald_1"}),
         ("at_least", {"kind": "clear_shed", "heald": "heald_1", "clearance": "6 mm"}),
         ("tolerance", {"kind": "dwell_contains", "heald": "heald_1", "angles": ["140 deg", "222 deg"]}),
@@ -70,24 +74,26 @@ def _found(bound: str, table: dict[str, Any], value: float) -> tuple[bool, float
 
 
 def _hold(conditions: tuple[Condition, ...], chain: Chain) -> bool:
-    return all(_holds(each, chain, (0.0, 4.0 * math.pi)) for each in conditions)
+    @cache
+    def numbers(span: tuple[float, float]) -> tuple[Any, Any]:
+        boxes = np.repeat(np.linspace(*span, ANGLES)[:, None, None], 2, axis=2)
+        return chain.numbers(boxes), boxes
+
+    def values(form: Sum, span: tuple[float, float]) -> Any:
+        found, boxes = numbers(span)
+        return value_of(form, chain, found, boxes).middle.mean(axis=-1)
+
+    return all(_holds(each, values, (0.0, 4.0 * math.pi)) for each in conditions)
 
 
-def _holds(condition: Condition, chain: Chain, run: tuple[float, float]) -> bool:
+def _holds(condition: Condition, values: Callable[..., Any], run: tuple[float, float]) -> bool:
     if isinstance(condition, Spans):
-        values = (_values(form, chain, *run) for form in condition.insides)
-        return all(_shortest(each) >= condition.at_least for each in values)
+        return all(_shortest(values(form, run)) >= condition.at_least for form in condition.insides)
     spans = condition.ranges(*run)
     if isinstance(condition, Sometime):
-        return all(_values(condition.form, chain, *span).max() >= 0.0 for span in spans)
-    highest = (np.max([_values(form, chain, *span) for form in condition.any_of], axis=0) for span in spans)
+        return all(values(condition.form, span).max() >= 0.0 for span in spans)
+    highest = (np.max([values(form, span) for form in condition.any_of], axis=0) for span in spans)
     return all(each.min() >= 0.0 for each in highest)
-
-
-def _values(form: Sum, chain: Chain, first: float, last: float) -> Any:
-    """The values of a form at angles between two of them."""
-    boxes = np.repeat(np.linspace(first, last, ANGLES)[:, None, None], 2, axis=2)
-    return value_of(form, chain, chain.numbers(boxes), boxes).middle.mean(axis=-1)
 
 
 def _shortest(values: Any) -> float:
