@@ -48,12 +48,11 @@ from ...fmi import source
 from ...fmi.native.slicing import settings_of, sliced
 from ...fmi.native.translate import ENTRIES
 from ...sweeps.varied import varied
-from . import FORMAT
+from . import FORMAT, MOST_REVOLUTIONS
 from .intervals import ALL, MATH, Ends, Interval, Unknown, floor, joined, number
 from .sides import SHAFT, START, check_side
 
 FINE = 0.02  # [rad]: so narrow must a box be that a mechanism is in one of its phases
-MOST_REVOLUTIONS = 1000
 FINER = 8  # bisections of a box that this arithmetic, which is wider, may need on top
 Box = tuple[Ends, ...]
 Faces = dict[int, int]  # of some sides, which end: 0 the lower, 1 the upper
