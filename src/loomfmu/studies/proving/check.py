@@ -105,7 +105,7 @@ class _Check:
                 raise Refused(f"{key} varies twice")
             self._sides |= targets
         self._equations = told["equations"]
-        within = f" of {scene.periods:g} revolution{'s' * (scene.periods != 1)}"
+        within = f" of {scene.periods:.15g} revolution{'s' * (scene.periods != 1)}"
         for (key, _ends), (low, high) in zip(told["over"].items(), self._ends, strict=True):
             about = varied(scene, key)
             first, last = (units.exact(end, about.display) for end in (low, high))
@@ -348,8 +348,8 @@ class _Mechanisms:
             )
             try:
                 wide, here = (place(each, time) for each in given)
-            except (TypeError, NameError) as error:
-                raise Refused(f"{name} cannot be confirmed: {error}") from None
+            except (TypeError, NameError):
+                raise Refused(f"{name} computes with what the check has no intervals for") from None
             for variable, a, b in zip(wanted, wide, here, strict=True):
                 middle[f"{name}.{variable}"] = b
                 found[f"{name}.{variable}"] = _narrowed(a, b, box)
