@@ -12,10 +12,11 @@ import fmpy.fmi2
 import fmpy.fmi3
 import pytest
 from driving import declared, moved
-from natives import DISCARD, ERROR, MEMORYLESS, OK, SOLVED, Instance
+from natives import DISCARD, ERROR, MEMORYLESS, OK, SOLVED, TIME, Instance
 
 from loomfmu.components import COMPONENTS
 from loomfmu.declaring.variables import Variable
+from loomfmu.fmi.dataflow import dependencies
 from loomfmu.fmi.native.compiler import ARITHMETIC
 from loomfmu.fmi.native.native_fmu import sources
 
@@ -230,6 +231,21 @@ def sum_of(weights: list[float], column: list[float]) -> float:
     for weight, each in zip(weights, column, strict=True):
         total += weight * each
     return total
+
+
+@pytest.mark.parametrize("fmi", [3])
+@pytest.mark.parametrize("name", COMPONENTS)
+def test_there_are_derivatives_by_what_outputs_depend_on_alone(native, name, fmi):
+    point = Point(native(name, fmi=fmi), name, "step", 1)
+    needs = dependencies(COMPONENTS[name])
+    knowns = {v.name: v.name for v in reals(name, "input", *["parameter"] * (name in MEMORYLESS))}
+    listed = frozenset().union(*needs.values()) & {v.name for v in reals(name, "parameter", "input")}
+    assert point.possible and listed <= knowns.keys()
+    for known, port in {**knowns, "time": TIME}.items():
+        status, found = point.instance.derivative(point.outputs, [port], [1.0])
+        assert status in (OK, DISCARD), point.instance.texts
+        for output, slope in zip(point.outputs, found, strict=True):
+            assert known in needs[output] or status == DISCARD or slope == 0.0, (output, known)
 
 
 def test_they_are_had_through_fmpy(package):

@@ -4,6 +4,7 @@ The component's methods, the physics functions they call and the constants and r
 one after the other, with an `__init__` that lists the declared fields. The module imports `math` alone.
 """
 
+import ast
 import dis
 import hashlib
 import inspect
@@ -36,6 +37,13 @@ def flatten(component: type[Component]) -> str:
     if component not in _flattened:
         _flattened[component] = _text(component)
     return _flattened[component]
+
+
+def of_self(node: ast.AST) -> str:
+    """The name of an attribute of `self`, or nothing."""
+    if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "self":
+        return node.attr
+    return ""
 
 
 def digest(component: type[Component]) -> str:

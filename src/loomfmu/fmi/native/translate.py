@@ -19,7 +19,8 @@ from typing import Any
 from ...declaring.variables import Component, Variable, arrays_of, variables_of
 from ...errors import LoomfmuError
 from .. import source
-from .c_code import TYPES, Untranslatable, c_name, comment, literal, of_self
+from ..source import of_self
+from .c_code import TYPES, Untranslatable, c_name, comment, literal
 from .c_numbers import DUAL, PLAIN, Numbers
 from .c_program import Program
 from .c_scope import Scope
