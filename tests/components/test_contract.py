@@ -24,7 +24,7 @@ from loomfmu.cosim.scenes.instances import stem
 from loomfmu.cosim.scenes.wiring import usual_wires
 from loomfmu.declaring.variables import EXTREMES, MIXED, MOTION, NOTHING, OWN, PUBLISHED, TIME
 from loomfmu.errors import numbered
-from loomfmu.fmi.dataflow import dependencies
+from loomfmu.fmi.dataflow.dependencies import dependencies
 from loomfmu.loom.standard_loom import COMPONENT_OF
 
 QUICKENING = 300.0  # of a shaft or a head, in SI

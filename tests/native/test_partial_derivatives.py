@@ -16,7 +16,7 @@ from natives import DISCARD, ERROR, MEMORYLESS, OK, SOLVED, TIME, Instance
 
 from loomfmu.components import COMPONENTS
 from loomfmu.declaring.variables import Variable
-from loomfmu.fmi.dataflow import dependencies
+from loomfmu.fmi.dataflow.dependencies import dependencies
 from loomfmu.fmi.native.compiler import ARITHMETIC
 from loomfmu.fmi.native.native_fmu import sources
 

@@ -16,7 +16,7 @@ from .. import components
 from ..cache.entries import IDENTITIES, made_file
 from ..declaring.variables import Component
 from ..files import replace_file
-from .dataflow import dependencies
+from .dataflow.dependencies import dependencies
 from .native.platforms import SHIPPED, stamp
 
 PACKAGE = Path(__file__).parents[1]

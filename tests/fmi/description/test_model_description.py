@@ -11,7 +11,7 @@ from live_fmus import COMPONENTS, NAMES
 from loomfmu import units
 from loomfmu.cosim.importing import fmus
 from loomfmu.declaring.variables import Variable, variables_of
-from loomfmu.fmi.dataflow import dependencies
+from loomfmu.fmi.dataflow.dependencies import dependencies
 from loomfmu.fmi.description.model_description import model_description
 from loomfmu.fmi.live.live_slave import CATEGORIES
 from loomfmu.version import __version__

@@ -4,7 +4,7 @@ from xml.etree.ElementTree import Element, SubElement
 
 from ... import units
 from ...declaring.variables import NOTHING, TIME, Component, Variable, variables_of
-from ..dataflow import dependencies
+from ..dataflow.dependencies import dependencies
 from ..live.live_slave import CATEGORIES
 from .references import FIRST_REFERENCE, FMI_TYPES
 from .xml_text import text_of

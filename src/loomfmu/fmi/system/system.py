@@ -7,7 +7,7 @@ from typing import Any
 
 from ...declaring.declarations import parameter
 from ...declaring.variables import TIME, Component, Problem, Terminal, Variable, variable_of, variables_of
-from ..dataflow import dependencies
+from ..dataflow.dependencies import dependencies
 
 Value = float | int | bool
 Reach = Callable[[str], frozenset[str]]

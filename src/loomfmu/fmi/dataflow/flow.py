@@ -1,65 +1,30 @@
-"""On which inputs, parameters and time the outputs of a component depend, by the flow of data in its source.
+"""The flow of data through a source.
 
 Nothing is computed: the value of an expression is the set of names that it may depend on, by what it is made
 of and by the conditions that lead there. At a branch both ways are gone.
 """
 
 import ast
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from typing import TypeVar, Union, cast
+from typing import TypeVar, cast
 
-from ..declaring.upstream import upstream
-from ..declaring.variables import NOTHING, TIME, Component, arrays_of, variables_of
-from .source import flatten, of_self
+from ...declaring.variables import NOTHING, TIME, Component, arrays_of
+from ..source import flatten, of_self
+from .values import NONE, Names, Places, Record, Value, flat, joined, together, under
 
-Names = frozenset[str]
-Value = Union[Names, tuple["Value", ...], "Record"]  # of a list: all that is in it
-Places = dict[str, Value]  # the locals, and the component's variables, which begin with a dot
 Found = TypeVar("Found")
-NONE: Names = frozenset()
+NEW = (ast.List, ast.ListComp, ast.BinOp, ast.Call)  # of a list: one that has no other name
+BUILTIN = frozenset(("abs", "bool", "float", "int", "list", "max", "min", "range", "round", "sum"))
 
 
 class Unfollowed(Exception):
     """Source beyond the Python that is followed here."""
 
 
-_done: dict[type[Component], tuple[Mapping[str, Names], Mapping[str, Names]]] = {}
-
-
-def dependencies(component: type[Component], many_steps: bool = False) -> Mapping[str, Names]:
-    """The inputs and parameters on which each output may depend, `TIME` among them, in a step or in several.
-
-    What a component keeps from before is held. So parameters count only where it keeps nothing: else they are
-    in what it keeps. Where the source cannot be followed an output depends on everything.
-    """
-    if component.needs:
-        return component.needs
-    if component not in _done:
-        _done[component] = _dependencies(component)
-    return _done[component][many_steps]
-
-
-def _dependencies(component: type[Component]) -> tuple[dict[str, Names], dict[str, Names]]:
-    variables = variables_of(component)
-    known = ("input", "parameter") if component.keeps == NOTHING else ("input",)
-    own = {f".{v.member}": frozenset({v.name} if v.causality in known else ()) for v in variables}
-    outputs = {v.name: f".{v.member}" for v in variables if v.causality == "output"}
-    # a host may have inputs go on with their rates to the end of the step
-    rates = {v.name: [v.rate] for v in variables if v.causality == "input" and v.rate}
-
-    def needs(places: Places) -> dict[str, Names]:
-        return {name: frozenset(upstream(_flat(places[place]), rates)) for name, place in outputs.items()}
-
-    try:
-        once, always = _followed(component, own)
-    except (Unfollowed, RecursionError):
-        once = always = dict.fromkeys(own, frozenset({TIME}).union(*own.values()))
-    return needs(once), needs(always)
-
-
-def _followed(component: type[Component], own: Mapping[str, Names]) -> tuple[Places, Places]:
+def followed(component: type[Component], own: Mapping[str, Names]) -> tuple[Places, Places]:
     """The places after one step, and after many, from what variables depend on before."""
     flow = _Flow(component)
     flow.places |= own
@@ -72,56 +37,6 @@ def _followed(component: type[Component], own: Mapping[str, Names]) -> tuple[Pla
         flow.call(flow.methods["step"], [NONE, time, NONE])
         passed.append(flow.places)
     return passed[0], passed[-1]
-
-
-# ---- what values depend on
-
-
-@dataclass(frozen=True)
-class Record:
-    """A record, field by field."""
-
-    names: tuple[str, ...]
-    values: tuple[Value, ...]
-
-
-def _flat(value: Value) -> Names:
-    """All that a value depends on."""
-    if isinstance(value, frozenset):
-        return value
-    return NONE.union(*map(_flat, value.values if isinstance(value, Record) else value))
-
-
-def _joined(one: Value, other: Value) -> Value:
-    """A value that is one or the other."""
-    if one == other:
-        return one
-    if isinstance(one, Record) and isinstance(other, Record) and one.names == other.names:
-        return Record(one.names, tuple(map(_joined, one.values, other.values)))
-    if isinstance(one, tuple) and isinstance(other, tuple) and len(one) == len(other):
-        return tuple(map(_joined, one, other))
-    return _flat(one) | _flat(other)
-
-
-def _under(value: Value, condition: Names) -> Value:
-    """A value that is there under a condition."""
-    if isinstance(value, frozenset):
-        return value | condition
-    if isinstance(value, Record):
-        return Record(value.names, tuple(_under(each, condition) for each in value.values))
-    return tuple(_under(each, condition) for each in value)
-
-
-def _together(ways: Sequence[Places]) -> Places:
-    """The places after one of several ways."""
-    found = dict(ways[0])
-    for way in ways[1:]:
-        for name, value in way.items():
-            found[name] = _joined(found[name], value) if name in found else value
-    return found
-
-
-# ---- the way through the source
 
 
 @dataclass
@@ -178,11 +93,11 @@ class _Flow(ast.NodeVisitor):
         self._block(function.body)
         if not self._ended:
             frame.exits.append(self.places)
-        after, self._ended, self._frame = _together(frame.exits), False, outer
+        after, self._ended, self._frame = together(frame.exits), False, outer
         self.places = around | _of_component(after)
         result: Value = frame.returned[0] if frame.returned else NONE
         for each in frame.returned[1:]:
-            result = _joined(result, each)
+            result = joined(result, each)
         return result, {name: after[name] for name in names if name in frame.filled}
 
     def generic_visit(self, node: ast.AST) -> None:
@@ -204,8 +119,8 @@ class _Flow(ast.NodeVisitor):
     def visit_Assign(self, node: ast.Assign) -> None:
         value = self.visit(node.value)
         for target in node.targets:
-            if isinstance(node.value, ast.Name) and isinstance(target, ast.Name):
-                self._frame.shared |= {node.value.id, target.id}
+            if isinstance(target, ast.Name) and not isinstance(node.value, NEW):
+                self._frame.shared |= {target.id, ast.unparse(node.value)}
             self._put(target, value)
 
     def visit_AnnAssign(self, node: ast.AnnAssign) -> None:
@@ -217,7 +132,7 @@ class _Flow(ast.NodeVisitor):
 
     def visit_Return(self, node: ast.Return) -> None:
         value = self.visit(node.value) if node.value else NONE
-        self._frame.returned.append(_under(value, self._frame.all))
+        self._frame.returned.append(under(value, self._frame.all))
         self._frame.exits.append(self.places)
         self._frame.left |= self._frame.condition | self._frame.broken
         self._ended = True
@@ -268,7 +183,7 @@ class _Flow(ast.NodeVisitor):
             if not self._ended:
                 ends.append(self.places)
             self._ended = False
-        self.places, self._ended = (_together(ends), False) if ends else (before, True)
+        self.places, self._ended = (together(ends), False) if ends else (before, True)
         self._frame.condition = condition
         return found
 
@@ -288,13 +203,13 @@ class _Flow(ast.NodeVisitor):
             frame.breaks = []
             self._block(node.body)
             ends = [] if self._ended else [self.places]
-            self.places, self._ended = _together([seen[0], *ends, *frame.breaks]), False
-        self.places = _together([self.places, *frame.breaks])
+            self.places, self._ended = together([seen[0], *ends, *frame.breaks]), False
+        self.places = together([self.places, *frame.breaks])
         frame.condition, frame.broken, frame.breaks = condition, broken, breaks
 
     def _put(self, target: ast.expr, value: Value) -> None:
         """Set what is on the left of an assignment."""
-        value, name = _under(value, self._frame.all), of_self(target)
+        value, name = under(value, self._frame.all), of_self(target)
         if isinstance(target, ast.Tuple):
             for each, part in zip(target.elts, _parts(value, len(target.elts)), strict=True):
                 self._put(each, part)
@@ -310,20 +225,20 @@ class _Flow(ast.NodeVisitor):
 
     def _put_element(self, array: ast.expr, index: ast.expr | None, value: Value) -> None:
         """Set an element of a list or an array: the one of a known number, or any."""
-        name, more = of_self(array), _flat(value) | (self._names(index) if index else NONE)
+        name, more = of_self(array), flat(value) | (self._names(index) if index else NONE)
         places = self._arrays.get(name) or [ast.unparse(array)]
         if not (name in self._arrays or isinstance(array, ast.Name)) or self._frame.shared & {*places}:
             raise Unfollowed
         if name and isinstance(index, ast.Constant):
             places = [places[_number(index)]]
         for place in places:
-            self.places[place] = _flat(self.places.get(place, NONE)) | more
+            self.places[place] = flat(self.places.get(place, NONE)) | more
         self._frame.filled |= {*places}
 
     # ---- expressions
 
     def _names(self, node: ast.expr) -> Names:
-        return _flat(self.visit(node))
+        return flat(self.visit(node))
 
     def _made_of(self, node: ast.expr) -> Names:
         parts = [part for part in ast.iter_child_nodes(node) if isinstance(part, ast.expr)]
@@ -340,28 +255,33 @@ class _Flow(ast.NodeVisitor):
             own = [self.places.get(place, NONE) for place in places or [f".{name}"]]
             return tuple(own) if places else own[0]
         record = self.visit(node.value)
-        return record.values[record.names.index(node.attr)] if isinstance(record, Record) else _flat(record)
+        return record.values[record.names.index(node.attr)] if isinstance(record, Record) else flat(record)
 
     def visit_Subscript(self, node: ast.Subscript) -> Value:
         value, index = self.visit(node.value), self._names(node.slice)
         if isinstance(value, tuple) and isinstance(node.slice, ast.Constant):
             part: Value = value[_number(node.slice)]
             return part
-        return _flat(value) | index
+        return flat(value) | index
 
     def visit_Tuple(self, node: ast.Tuple) -> Value:
         return tuple(self._several(node.elts))
 
     def visit_ListComp(self, node: ast.ListComp) -> Names:
-        (each,) = node.generators
+        each, before = node.generators[0], self.places
+        if len(node.generators) > 1 or each.ifs:
+            raise Unfollowed
         span = self._names(each.iter)
+        self.places = dict(before)
         self._put(each.target, span)
-        return span | self._names(node.elt)
+        found = span | self._names(node.elt)
+        self.places = before | _of_component(self.places)
+        return found
 
     def visit_IfExp(self, node: ast.IfExp) -> Value:
         test = self._names(node.test)
         ways = self._ways(test, partial(self.visit, node.body), partial(self.visit, node.orelse))
-        return _under(_joined(*ways), test)
+        return under(joined(*ways), test)
 
     def visit_BoolOp(self, node: ast.BoolOp) -> Names:
         found = self._names(node.values[0])
@@ -371,22 +291,26 @@ class _Flow(ast.NodeVisitor):
 
     def visit_Call(self, node: ast.Call) -> Value:
         arguments, method, name = self._several(node.args), of_self(node.func), ast.unparse(node.func)
-        if node.keywords or not (method in self.methods or isinstance(node.func, ast.Name)):
+        if node.keywords:
             raise Unfollowed
-        if name in self._records:
-            return Record(self._records[name], tuple(arguments))
-        if method:
+        if method in self.methods:
             function = self.methods[method]
             value, filled = self.call(function, [NONE, *arguments])
         elif name in self._functions:
             function = self._functions[name]
             value, filled = self._apart(function, tuple(arguments))
-        else:  # of math, or Python's own; lists have lengths that are known beforehand
-            return NONE.union(*map(_flat, arguments)) if name != "len" else NONE
+        elif name in self._records:
+            return Record(self._records[name], tuple(arguments))
+        elif name in BUILTIN or (isinstance(node.func, ast.Name) and hasattr(math, name)):
+            return NONE.union(*map(flat, arguments))
+        elif name == "len":  # known beforehand
+            return NONE
+        else:
+            raise Unfollowed
         for argument, given in zip(function.args.args[bool(method) :], node.args, strict=False):
             if argument.arg in filled:
                 self._put_element(given, None, filled[argument.arg])
-        return _under(value, self._frame.all)
+        return under(value, self._frame.all)
 
     def _apart(self, function: ast.FunctionDef, arguments: tuple[Value, ...]) -> tuple[Value, Places]:
         """Call a function that knows nothing but its arguments; once for the same."""
@@ -412,7 +336,7 @@ class _Flow(ast.NodeVisitor):
 
 def _parts(value: Value, count: int) -> Sequence[Value]:
     """The parts of what is taken apart."""
-    return value if isinstance(value, tuple) and len(value) == count else [_flat(value)] * count
+    return value if isinstance(value, tuple) and len(value) == count else [flat(value)] * count
 
 
 def _number(node: ast.Constant) -> int:

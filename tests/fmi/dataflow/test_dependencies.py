@@ -10,7 +10,7 @@ import pytest
 from loomfmu.declaring.arrays import array
 from loomfmu.declaring.declarations import auxiliary, input_, output, parameter, state
 from loomfmu.declaring.variables import NOTHING, Component, Problem
-from loomfmu.fmi.dataflow import dependencies
+from loomfmu.fmi.dataflow.dependencies import dependencies
 
 
 @dataclass(frozen=True)
