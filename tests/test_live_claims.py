@@ -5,6 +5,7 @@ import math
 import re
 import sys
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -197,7 +198,8 @@ def test_the_page_says_what_the_run_says(said: Any, name: str, speed: float | No
         value = mine[key] if mine[key] is not None else math.nan
         tolerance = {"rel": 1e-9, "abs": 1e-8 if key == "time" else 1e-12, "nan_ok": True}
         assert value == pytest.approx(getattr(its, key), **tolerance), key
-    assert alike(shown[0], its.shown(its.worst)) and alike(shown[1], its.shown(its.bound))
+    known = math.inf if mine["error"] is None else mine["error"]
+    assert alike(shown[0], replace(its, error=known).shown_worst) and alike(shown[1], its.shown(its.bound))
     assert alike(place, its.place or NOWHERE), (place, its)
     if speed is None and math.isfinite(its.worst):
         # differences of values that agree to 1e-9
@@ -218,6 +220,20 @@ def test_a_claim_that_coarser_steps_cannot_tell_is_not_judged(opened: Open, tmp_
     (found,) = page.evaluate("loomfmu.live.verdicts")
     assert found["holds"] is None
     assert "coarser steps give no value" in found["note"]
+
+
+@pytest.mark.slow
+def test_a_page_says_which_claims_it_does_not_judge(opened: Open, tmp_path: Path) -> None:
+    lifts = {"kind": "below", "signal": "heald_1.lift + heald_2.lift", "bound": "99 mm"}
+    scene = with_claims(
+        "[loom]\nmachine = 'WL680-3600'\nweave = '10/01'\n", [lifts, {"kind": "lowest_margin", "bound": 0.1}]
+    )
+    page = opened(live_page.write(scene, [], tmp_path / "page.html"))
+    until(page, lambda: page.evaluate("Boolean(loomfmu.live.pace)"))
+    first, second = page.evaluate("loomfmu.live.verdicts")
+    assert first["left"] and first["note"] == "a page judges signals, not expressions; loomfmu run judges it"
+    assert second["holds"] and not second.get("left")
+    assert "1 not judged here" in page.inner_text(".outcome")
 
 
 def alike(one: str, other: str) -> bool:

@@ -11,7 +11,8 @@ REFERENCE = ("docs/command_line.md",)  # beside what `reference` generates
 GUIDES = (
     "docs/scenes.md", "docs/claims.md", "docs/how_sure.md", "docs/report.md", "docs/traces.md",
     "docs/sweeps.md", "docs/limits.md", "docs/tolerances.md", "docs/proving.md", "docs/optimizing.md",
-    "docs/fitting.md", "docs/python.md", "docs/importing.md", "docs/own_mechanism.md",
+    "docs/fitting.md", "docs/python.md", "docs/importing.md", "docs/own_claim.md",
+    "docs/own_mechanism.md",
 )  # fmt: skip
 PROJECT = ("CHANGELOG.md", "SECURITY.md", "THIRD_PARTY.md")
 CONTRIBUTING = (

@@ -130,9 +130,9 @@ class SceneFile(pytest.File):
         warnings = [f"warning:      {text}" for text in getattr(self.outcome, "warnings", ())]
         facts = {
             "signal": verdict.signal,
-            "worst": verdict.shown(verdict.worst),
+            "worst": verdict.shown_worst,
             "bound": ("at least " if verdict.sense > 0 else "at most ") + verdict.shown(verdict.bound),
-            "distance": verdict.shown(verdict.distance),
+            "distance": verdict.known(verdict.distance),
             "error": verdict.shown_error,
             "at": verdict.place or "no place",
             "note": verdict.note,

@@ -257,7 +257,7 @@ def test_the_claim_names_the_deflection_and_what_it_was_under_the_push(tmp_path)
     dynamic = judge(result.trace, kind="belt_deflection", at_most="2 mm")
     assert dynamic.word == "FAILS"
     assert 1e3 * dynamic.worst == pytest.approx(7.80, abs=0.01)
-    assert "while the head was pushed: 3.35" in dynamic.note
+    assert "while the head was pushed: 3.4 mm" in dynamic.note
 
 
 @pytest.mark.parametrize(

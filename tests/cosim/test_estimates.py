@@ -166,6 +166,11 @@ def test_steps_that_do_not_show_a_ripple_leave_a_claim_undecided(steps: int, sho
     assert (why + " or more" in found.note) is not shown
 
 
+def test_a_start_up_that_no_steps_show_leaves_a_claim_undecided() -> None:
+    (found,) = of_loom(90, bound=-1000, shaft__ramp_duration=1e-310)
+    assert "in 1e-310 s; more than any that a scene can have are needed" in found.note
+
+
 @pytest.mark.parametrize(
     ("given", "signal"),
     [

@@ -2,9 +2,12 @@
 
 import ast
 import io
+import math
 from pathlib import Path
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import loomfmu
 from loomfmu.display import printed
@@ -30,6 +33,21 @@ FAILS  a long claim
   (belt.margin) 1 mm
 holds  another
 """
+
+
+@given(st.floats(-1e9, 1e9), st.floats(1e-12, 1e6), st.floats(-1e9, 1e9))
+def test_a_decided_value_is_shown_on_its_side_of_the_bound(value: float, error: float, bound: float) -> None:
+    shown = float(f"{value:.{printed.digits(value, error, 17)}g}")
+    rounding = 1e-15 * max(abs(value), abs(bound))
+    assert abs(shown - value) <= error + rounding
+    if abs(value - bound) > error + rounding:
+        assert math.copysign(1.0, shown - bound) == math.copysign(1.0, value - bound)
+
+
+def test_digits_below_the_error_are_left_out() -> None:
+    errors = (0.04, 0.5, 40.0, math.nan, math.inf)
+    texts = [printed.brief(5596.747, printed.digits(5596.747, error)) for error in errors]
+    assert texts == ["5596.75", "5597", "5600", "5596.747", "5596.747"]
 
 
 @pytest.mark.parametrize(("width", "text"), [(200, COLUMNS), (44, COLUMNS), (43, FILLED), (20, NARROW)])

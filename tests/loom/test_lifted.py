@@ -91,8 +91,8 @@ def test_both_are_judged_and_the_carrier_decides() -> None:
         assert "heald_1" in alone.signal
         assert carrier.worst != alone.worst
         shown = carrier.note.partition("frame: ")[2] or carrier.note.partition("frames: ")[2]
-        # the note has seven digits
-        assert float(shown.split()[0]) == pytest.approx(alone.displayed(alone.worst), rel=1e-6)
+        # the note has four digits
+        assert float(shown.split()[0]) == pytest.approx(alone.displayed(alone.worst), rel=5e-4)
     room, frames, dwell, frames_dwell, *_ = result.claims
     assert room.worst < frames.worst
     assert not dwell

@@ -263,6 +263,15 @@ def test_a_range_shows_a_dip_beside_the_bound_of_its_claim(
     assert bound.get_label() == "bound 0.1" and set(bound.get_ydata()) == {0.1}
 
 
+def test_a_legend_covers_no_curve(copied: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn: list[Any] = []
+    monkeypatch.setattr(pictures, "save", lambda figure, path, *_more: (drawn.append(figure), path)[1])
+    assert main(["plot", str(copied), "belt.margin", "heald_1.lift", "damper_1.carrier_lift"]) == 0
+    drawn[0].draw_without_rendering()
+    for axes in drawn[0].axes:
+        assert axes.get_legend().get_window_extent().x0 >= axes.get_window_extent().x1
+
+
 @pytest.mark.few(3)
 @pytest.mark.parametrize(
     ("arguments", "reason"),

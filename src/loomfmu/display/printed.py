@@ -2,6 +2,7 @@
 
 import contextlib
 import io
+import math
 import shutil
 import sys
 import textwrap
@@ -102,6 +103,30 @@ def rounded(value: float, up: bool) -> str:
     """
     with localcontext(prec=10, rounding=ROUND_CEILING if up else ROUND_FLOOR):
         return f"{+Decimal(value):f}"
+
+
+def digits(value: float, error: float, most: int = 7) -> int:
+    """Return the number of digits of a value that its error allows: 1 to `most`, or `most` if unknown.
+
+    Rounding to them moves the value by no more than the error. So a value that is farther from a bound than
+    its error is shown on its side of the bound.
+
+    >>> digits(5596.747, 0.5), digits(5.8167, 0.06), digits(0.22556868, 6e-9)
+    (4, 2, 7)
+    """
+    if not (0.0 < error < math.inf and 0.0 < abs(value) < math.inf):
+        return most
+    last = math.floor(math.log10(2.0 * error))  # the power of ten of the last digit
+    return min(max(math.floor(math.log10(abs(value))) - last + 1, 1), most)
+
+
+def brief(value: float, figures: int, sign: str = "") -> str:
+    """Return a number rounded to so many digits, without an exponent up to a million.
+
+    >>> brief(5596.747, 2), brief(12.3456, 4, "+"), brief(-0.0, 7)
+    ('5600', '+12.35', '0')
+    """
+    return f"{float(f'{value:.{figures}g}') + 0.0:{sign}.{max(figures, 7)}g}"  # not -0
 
 
 def as_csv(rows: Iterable[Sequence[object]]) -> str:

@@ -9,7 +9,7 @@ from ..cosim.claims.judging import Form, Question, needs_shaft
 from ..cosim.claims.movers import Wired
 from ..errors import LoomfmuError
 from ..traces import Signals
-from ..traces.verdict import SHED_OPENING
+from ..traces.verdict import REED_DISTANCE, SHED_OPENING
 from .lifted import check_lifted_by, frames_of, height_of, lift_of
 
 
@@ -87,7 +87,7 @@ class ReedClearOfRapier(_InShed):
 
     def question(self, trace: Signals) -> Question:
         limit, position = f"{self.reed}.front_limit", f"{self.reed}.position"
-        form = self.form("smallest distance from the front limit", f"{limit} - {position}")
+        form = self.form(REED_DISTANCE, f"{limit} - {position}")
         signals = [f"{self.weft}.travel", position, limit]
         return Question("reed", [form], signals, [self.clearance, f"{self.belt}.idle_travel"])
 

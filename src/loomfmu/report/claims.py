@@ -73,7 +73,7 @@ def holding(verdicts: list[Verdict], judged: bool) -> str:
 
 def _distance(verdict: Verdict) -> str:
     """Return the distance of the worst value from the bound, negative beyond it, also as a share of it."""
-    text = verdict.shown(verdict.distance)
+    text = verdict.known(verdict.distance)
     if text == "no value" or not verdict.bound:
         return text
     return f"{text} ({100.0 * verdict.relative_distance:+.1f} %)"

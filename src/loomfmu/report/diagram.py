@@ -159,7 +159,7 @@ def _not_drawn(subject: Subject, occasions: Occasions) -> str:
 def marks_in(verdicts: Sequence[Verdict], number: int) -> list[Mark]:
     """The claims whose worst value is in a revolution."""
     return [
-        Mark(each.angle, bool(each), f"{each.word}: {each.claim}, {each.shown(each.worst)}")
+        Mark(each.angle, bool(each), f"{each.word}: {each.claim}, {each.shown_worst}")
         for each in verdicts
         if each.revolution == number and math.isfinite(each.angle)
     ]

@@ -227,4 +227,4 @@ def _judge(axes: Any, verdicts: Sequence[Verdict], limits: tuple[float, float] |
             side = (low, min(bound, high)) if each.sense > 0 else (max(bound, low), high)
             axes.axhspan(*side, color=plotting.FAILING, linewidth=0, zorder=0, label="fails")
     if verdicts:
-        axes.legend()
+        plotting.legend(axes)

@@ -261,7 +261,7 @@ def _alike(a: Verdict, b: Verdict, tolerance: Tolerance) -> bool:
 
 def _outcome(verdict: Verdict, named: bool) -> str:
     signal = f" ({verdict.signal})" if named else ""
-    return f"{verdict.word}{signal}, {verdict.shown(verdict.worst)}, bound {verdict.shown(verdict.bound)}"
+    return f"{verdict.word}{signal}, {verdict.shown_worst}, bound {verdict.shown(verdict.bound)}"
 
 
 def _values(

@@ -221,7 +221,13 @@ def draw(
         axes.set_xlim(extent.first, extent.last)
     axes.grid(color=STYLE["grid.color"], linewidth=STYLE["grid.linewidth"])
     if len(curves) > 1:
-        axes.legend(frameon=False)
+        legend(axes)
+
+
+def legend(axes: Any) -> None:
+    """Name what is drawn, beside the axes in a figure that makes room for it: there it covers no curve."""
+    makes_room = axes.figure.get_layout_engine() is not None
+    axes.legend(frameon=False, **({"loc": "upper left", "bbox_to_anchor": (1.0, 1.0)} if makes_room else {}))
 
 
 def degrees() -> Any:

@@ -8,11 +8,13 @@ from typing import Any, Self
 
 from .. import units
 from ..display import notebook
+from ..display.printed import brief, digits
 from ..errors import shown
 
 HEADINGS = ("verdict", "claim", "signal", "worst", "bound", "distance", "error", "at", "note")
 HOLDS, FAILS, UNDECIDED = "holds", "FAILS", "undecided"
 SHED_OPENING = "smallest shed opening at the head"  # a claim whose bound is the height of the head
+REED_DISTANCE = "smallest distance from the front limit"  # a claim on the reed while the head is in the shed
 
 # what JSON makes of the types of the fields
 JSON: dict[Any, tuple[type, ...]] = {
@@ -68,7 +70,7 @@ class Verdict:
         place = f" at {self.place}" if self.place else ""
         note = f" ({self.note})" if self.note else ""
         return (
-            f"{self.word}: {self.claim} ({self.signal}), {self.shown(self.worst)}{place},"
+            f"{self.word}: {self.claim} ({self.signal}), {self.shown_worst}{place},"
             f" bound {self.shown(self.bound)}{self.reason}{note}"
         )
 
@@ -111,7 +113,7 @@ class Verdict:
     @property
     def row(self) -> tuple[str, ...]:
         """The verdict as a row of a table below `HEADINGS`."""
-        worst, bound, distance = self.shown(self.worst), self.shown(self.bound), self.shown_distance
+        worst, bound, distance = self.shown_worst, self.shown(self.bound), self.shown_distance
         place, error = self.place or "-", self.shown_error
         return self.word, self.claim, self.signal, worst, bound, distance, error, place, self.note
 
@@ -119,17 +121,18 @@ class Verdict:
     def shown_distance(self) -> str:
         """The distance in short: as a share of the bound, or in its unit if the bound is 0."""
         if math.isfinite(self.relative_distance):
-            return f"{100.0 * self.relative_distance:+.4g} %"
+            share, error = 100.0 * self.relative_distance, 100.0 * self.error / abs(self.bound)
+            return f"{brief(share, digits(share, error, 4), '+')} %"
         if not math.isfinite(self.distance):
             return "-"
-        return f"{self.displayed(self.distance):+.4g}" + ("" if self.label == "1" else f" {self.label}")
+        return self._in_unit(self.distance, self._digits(self.distance, 4), "+")
 
     @property
     def shown_error(self) -> str:
         """The numerical error in short, in the unit that people read; "-" where none was estimated."""
         if not math.isfinite(self.error):
             return "-"
-        return f"{self.displayed(self.error):.1g}" + ("" if self.label == "1" else f" {self.label}")
+        return self._in_unit(self.error, 1)
 
     def _repr_html_(self) -> str:
         return notebook.table(HEADINGS, [self.row])
@@ -147,11 +150,24 @@ class Verdict:
             return value
         return value * units.unit(self.unit).factor / units.unit(self.display_unit).factor
 
-    def shown(self, value: float, digits: int = 7) -> str:
-        """One of the verdict's values as text, with its unit."""
-        if not math.isfinite(value):
-            return "no value"
-        number = f"{self.displayed(value) + 0.0:.{digits}g}"  # not -0
+    def shown(self, value: float, most: int = 7) -> str:
+        """A value in the verdict's unit as text, with up to so many digits."""
+        return self._in_unit(value, most) if math.isfinite(value) else "no value"
+
+    @property
+    def shown_worst(self) -> str:
+        """The worst value as text, with the digits that its error allows."""
+        return self.known(self.worst)
+
+    def known(self, value: float) -> str:
+        """A value that is as far off as the worst one, such as the distance, with the digits of its error."""
+        return self.shown(value, self._digits(value))
+
+    def _digits(self, value: float, most: int = 7) -> int:
+        return digits(self.displayed(value), self.displayed(self.error), most)
+
+    def _in_unit(self, value: float, figures: int, sign: str = "") -> str:
+        number = brief(self.displayed(value), figures, sign)
         return number if self.label == "1" else f"{number} {self.label}"
 
     @property

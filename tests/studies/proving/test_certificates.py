@@ -51,10 +51,8 @@ def test_a_certificate_is_confirmed(told: dict[str, Any], tmp_path: Path) -> Non
     lines = _check(told, tmp_path)
     names = ("margin", "dwell", "transfer")
     assert [line.split(" (")[0] for line in lines] == [f"confirmed: {name}" for name in names]
-    assert (
-        "bound = 0.1) for all shaft angles of 2 revolutions, shaft.speed from 67.0206433 to 67.5442421 (SI)"
-        in lines[0]
-    )
+    box = "for all shaft angles of 2 revolutions, shaft.speed from 640 to 645 rev/min"
+    assert f"bound = 0.1) {box}" in lines[0]
 
 
 FORGED = [  # what is done to a certificate, and what is said of it
@@ -67,7 +65,18 @@ FORGED = [  # what is done to a certificate, and what is said of it
         f'told["scene"] = {WITHOUT_FRAMES!r}\ntold["claims"] = [{{"name": "shed", "conditions": []}}]',
         "no heald frame",
     ),
-    ('told["over"]["shaft.start_angle"] = ["0x0p0", (1e-3).hex()]', "varies twice"),
+    ('told["over"]["shaft.start_angle"] = ["0x0p0", (1e-3).hex()]', "all shaft angles are proven"),
+    ('told["over"]["revolutions"] = [(2.0).hex(), (100.0).hex()]', "revolutions cannot vary in a proof"),
+    (
+        'told["over"]["heald.stroke"] = [(0.097).hex(), (0.099).hex()]\n'
+        'told["overrides"] = {"heald_2.stroke": "150 mm"}',
+        "heald_2.stroke keeps a value of its own",
+    ),
+    (
+        'told["scene"] = told["scene"].replace("revolutions = 2", "revolutions = 1e7", 1)',
+        "more than 1000 revolutions",
+    ),
+    ('told["texts"] = {"a": "", "a/b": ""}', "is not a certificate"),
     (
         'told["over"]["heald_2.stroke"] = [(0.01).hex(), (0.9).hex()]\n'
         'told["over"]["heald.stroke"] = [(0.098).hex(), (0.0981).hex()]',
@@ -124,6 +133,23 @@ def test_a_meeting_is_confirmed_at_the_angle_that_the_certificate_names(tmp_path
         covers[0][0] = angle.hex()
         with pytest.raises(LoomfmuError, match=message):
             _check(told, tmp_path)
+    covers[0].clear()
+    with pytest.raises(LoomfmuError, match="is not a certificate"):
+        _check(told, tmp_path)
+
+
+def test_a_slope_that_is_0_at_an_end_of_a_box_is_confirmed(tmp_path: Path) -> None:
+    over, wider = ["shaft.speed=600rpm..610rpm"], {"transfer.needed_overlap": "0.05 m"}
+    found = prove(RAPIERS, over=over, set=wider, claims=["the hooks pass each other slowly"])
+    certificate.write(found, tmp_path / "proof.json")
+    assert len(check(tmp_path / "proof.json")) == 1
+
+
+def test_a_loom_that_turns_backwards_is_confirmed(loom: Any, tmp_path: Path) -> None:
+    scene = parse(loom.text.replace('bound = "shaft.speed"', "bound = 1"))
+    found = prove(scene, over=["shaft.speed=-400rpm..-399rpm"], claims=["margin", "transfer"])
+    certificate.write(found, tmp_path / "proof.json")
+    assert len(check(tmp_path / "proof.json")) == 2
 
 
 @pytest.mark.parametrize("text", ["", "{}", '{"format": "loomfmu proof 9"}', "[1, 2]", "[" * 5000])

@@ -118,6 +118,10 @@ def test_a_loom_that_turns_backwards_is_proven_at_its_own_angles(loom: Scene) ->
         ({"over": "shaft.speed=640rpm..300rpm"}, "is empty"),
         ({"boxes": 0}, "boxes = 0 is not a number of boxes"),
         ({"over": ["shaft.start_angle=0deg..10deg"]}, "all shaft angles are proven"),
+        (
+            {"over": ["heald.stroke=97mm..99mm"], "set": {"heald_2.stroke": "105 mm"}},
+            "heald_2.stroke keeps a value of its own",
+        ),
         ({"over": ["belt.head_mass=1g..2g", "belt.head_mass=2g..3g"]}, "both set"),
     ],
 )
@@ -233,9 +237,11 @@ def test_a_run_notes_what_is_proven(
     (tmp_path / "loom.toml").write_text(loom.text)
     assert main(["run", str(tmp_path / "loom.toml"), "--prove", "shaft.speed=300rpm..640rpm"]) == 0
     assert text in " ".join(capsys.readouterr().out.split())
-    assert main(["run", str(tmp_path / "loom.toml"), "--prove", "shaft.speed=300..640"]) == 0
-    assert "warning: shaft.speed = 300 is read as 300 rad/s" in capsys.readouterr().err
-    assert main(["run", str(tmp_path / "loom.toml"), "--prove", "shaft.speed=700rpm..800rpm"]) == 0
+    assert main(["run", str(tmp_path / "loom.toml"), "--prove", "shaft.speed=300..640"]) == 2
+    said = capsys.readouterr().err
+    assert "warning: shaft.speed = 300 is read as 300 rad/s" in said
+    assert "600 rev/min, the scene's value, is outside the range from 2864.789" in said
+    assert main(["run", str(tmp_path / "loom.toml"), "--prove", "shaft.speed=500rpm..800rpm"]) == 0
     said = " ".join(capsys.readouterr().out.split())
-    assert "not proven for shaft.speed from 700 to 800 rev/min:" in said
+    assert "not proven for shaft.speed from 500 to 800 rev/min:" in said
     assert "refuted: margin (shaft.speed = " in said

@@ -84,7 +84,10 @@ class Requested:
     def __init__(self, scene: Scene):
         """Read the claims. Raises LoomfmuError for one that cannot be read."""
         self.scene = scene
-        self.claims = [read(table, partial(_unit, scene, place_of(table))) for table in scene.claims]
+        directory = None if scene.package else scene.directory  # a package is data, but for its FMUs
+        self.claims = [
+            read(table, partial(_unit, scene, place_of(table)), directory) for table in scene.claims
+        ]
 
     @cached_property
     def wires(self) -> dict[str, str]:

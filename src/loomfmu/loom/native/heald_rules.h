@@ -210,7 +210,7 @@ static void judge_dwell_contains(struct run *run, const struct call *call, struc
         if (lift == 0)
             take_moment(answer, farthest);
         else
-            note(run, answer, text(run, "its frame: %.7g %%", 100.0 * farthest.value), PLAIN);
+            note(run, answer, text(run, "its frame: %.4g %%", 100.0 * farthest.value), PLAIN);
     }
 }
 

@@ -10,7 +10,7 @@ static void judge_deflection(struct run *run, const struct call *call, struct an
 {
     const double pushed = last_of(run, signal_of(call, 2));
     judge_held(run, call, answer);
-    note(run, answer, text(run, "while the head was pushed: %.7g mm", pushed / 0.001), PLAIN);
+    note(run, answer, text(run, "while the head was pushed: %.2g mm", pushed / 0.001), PLAIN); /* its error is 1 % */
     note(run, answer, last_of(run, signal_of(call, 3)) != 0.0 ? "the belt folded" : "", PLAIN);
     if (last_of(run, signal_of(call, 4)) != 0.0)
         note(run, answer, "free lengths above 5 times bow_length do not count", PLAIN);

@@ -95,7 +95,7 @@ static void judge_shed(struct run *run, const struct call *call, struct answer *
         carried = carried || signal_of(call, 1 + 2 * frame) != signal_of(call, 2 + 2 * frame);
     answer->worst = opening(run, call, &shed, false, answer);
     if (carried)
-        note(run, answer, text(run, "the frames: %.7g mm", opening(run, call, &shed, true, answer) / 0.001), PLAIN);
+        note(run, answer, text(run, "the frames: %.4g mm", opening(run, call, &shed, true, answer) / 0.001), PLAIN);
 }
 
 static void judge_reed(struct run *run, const struct call *call, struct answer *answer)

@@ -90,7 +90,7 @@ def view(tracks: Tracks, pair: Pair, drives: Mapping[str, Drive], shed: Shed | N
     ]
     apart = _apart(tracks, name, giver, taker) if taker else max(reached(tracks, giver), 500.0)
     right = apart - ends[1].box[0] if taker else apart + 60.0
-    tall = shed.half + shed.tall + RAIL if shed else 0.0
+    tall = shed.high if shed else 0.0
     bottom, top = min(-tall, *(each.box[1] for each in ends)), max(tall, *(each.box[2] for each in ends))
     px = (right - ends[0].box[0]) / WIDE
     sketch = Sketch(tracks, ends[0].box[0], bottom - 24.0 * px, right, top + 24.0 * px, WIDE)
@@ -173,14 +173,18 @@ def _names(sketch: Sketch, ends: Sequence[End], apart: float, shed: Shed | None)
         if place:
             tip = sketch.tracks.add(f"{end.belt.name}.tip_across", ["-", apart, tip])
         who = ("taker" if place else "giver") if both else "rapier head"
-        sketch.letter((tip, -GUIDE), who, (30.0 * (2 * place - 1) if both else -30.0, 15.0))
+        aside = 30.0 * (2 * place - 1) if both else -30.0
+        if shed:  # above the frames
+            with sketch.group(shift=(tip, 0.0)):
+                sketch.line((aside * px, GUIDE), (aside * px, shed.high), role="leader")
+        sketch.letter((tip, shed.high if shed else -GUIDE), who, (aside, -8.0 if shed else 15.0))
     if shed:
-        high = shed.half + shed.tall + RAIL
-        sketch.label(0.3 * apart, high, "heald frames", shift=(0.0, -8.0))
-        sketch.pointed((0.2 * apart, -high - 4.0 * px), (0.2 * apart, -0.5 * shed.half), "warp")
+        low = -shed.high - 4.0 * px
+        sketch.pointed((0.34 * apart, low), (0.34 * apart, RAIL - shed.high), "heald frames")
+        sketch.pointed((0.2 * apart, low), (0.2 * apart, -0.5 * shed.half), "warp")
         if boarded(shed):
             y = -shed.low(shed.station) - BOARD
-            sketch.pointed((0.8 * apart, -high - 4.0 * px), (0.8 * apart, y), "race board")
+            sketch.pointed((0.8 * apart, low), (0.8 * apart, y), "race board")
     if both:
         low = sketch.bottom + 24.0 * px
         sketch.line((0.5 * apart, low), (0.5 * apart, sketch.top), role="path")

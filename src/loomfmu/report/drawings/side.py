@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 
 from ...components.warp_tension import WarpTension
-from ...traces.verdict import SHED_OPENING
+from ...traces import Trace
+from ...traces.verdict import REED_DISTANCE, SHED_OPENING
 from ..occasions import instances
 from ..rules import Rule, mm
 from .belt import Belt
@@ -51,13 +52,18 @@ class Shed:
     reed: str
     behind: tuple[float, float]  # the reed from the fell: at most, and at least while the head is in the shed
     height: float  # of the head
-    claimed: bool
+    claimed: int | None  # place of the claim on its height
     tip: str  # track of the head in the shed
 
     @property
     def pitch(self) -> float:
         """Distance of a frame behind another."""
         return min(BEHIND, DEEPEST / len(self.frames))
+
+    @property
+    def high(self) -> float:
+        """The top of a raised frame."""
+        return self.half + self.tall + RAIL
 
     @property
     def station(self) -> float:
@@ -93,8 +99,8 @@ def shed_of(tracks: Tracks, belt: Belt | None) -> Shed | None:
         tracks.add("least_opening", ["lowest", ["if positive", belt.within, "opening", NEVER]])
         tracks.add("half_least", ["*", 0.5, "least_opening"])
     while_inside: Rule = ["lowest", ["if positive", belt.within if belt else 0.0, distance, NEVER]]
-    heights = [1000.0 * each.bound for each in tracks.trace.verdicts if each.claim.endswith(SHED_OPENING)]
-    head = heights[0] if heights else LOW
+    claimed = _place_of(tracks.trace, SHED_OPENING)
+    head = LOW if claimed is None else 1000.0 * tracks.trace.verdicts[claimed].bound
     tracks.add("room", ["-", "opening", head])
     tracks.add("tight", ["-", head, "opening"])
     return Shed(
@@ -106,9 +112,14 @@ def shed_of(tracks: Tracks, belt: Belt | None) -> Shed | None:
         reeds[0] if reeds else "",
         (float(tracks.values(["highest", distance])), float(tracks.values(while_inside))),
         head,
-        bool(heights),
+        claimed,
         belt.tip if belt else "",
     )
+
+
+def _place_of(trace: Trace, quantity: str) -> int | None:
+    """Return the place of the first claim on a quantity, or None."""
+    return next((n for n, each in enumerate(trace.verdicts) if each.claim.endswith(quantity)), None)
 
 
 def _framed(tracks: Tracks, name: str, tall: float) -> Frame:
@@ -144,8 +155,7 @@ def _lengths(tracks: Tracks) -> tuple[float, float, bool]:
 def _section(tracks: Tracks, shed: Shed) -> Figure:
     """The section from the healds to the cloth."""
     last = -shed.front - shed.pitch * (len(shed.frames) - 1)
-    high = shed.half + shed.tall + RAIL
-    sketch = Sketch(tracks, last - 85.0, -high - 8.0, 90.0, high + 22.0, WIDE)
+    sketch = Sketch(tracks, last - 85.0, -shed.high - 8.0, 90.0, shed.high + 22.0, WIDE)
     _parts(sketch, shed)
     first = shed.frames[0]
     sketch.label(0.5 * (last - shed.front), sketch.top, "heald frames", shift=(0.0, 18.0))
@@ -191,9 +201,11 @@ def _notes(tracks: Tracks, shed: Shed) -> str:
     if boarded(shed):
         found.append("So is the race board, which goes with the reed under the open shed.")
     if shed.tip and shed.reed and shed.behind[1] < shed.station:
+        judged = _place_of(tracks.trace, REED_DISTANCE)
+        near = f"{shed.behind[1]:.3g} mm" if judged is None else tracks.trace.verdicts[judged].shown_worst
         found.append(
             f"The head is {shed.station:.3g} mm behind the fell, where warp_ratio puts it. While it is in the"
-            f" shed, the reed comes to within {shed.behind[1]:.3g} mm of the fell, which is beyond the head."
+            f" shed, the reed comes to within {near} of the fell, which is beyond the head."
         )
     return " ".join(found)
 
@@ -211,12 +223,15 @@ def _near(tracks: Tracks, shed: Shed) -> Figure:
         for name in ("half_least", tracks.add("least_below", ["*", -1.0, "half_least"])):
             sketch.line((side, name), (-shed.station + 0.7 * x, name), role="path")
         sketch.letter((side, "half_least"), "least opening", (44.0, -5.0))
-        values.append(Value("least while the head is inside", "least_opening", "mm"))
-        values += [Value("room left by the head", "room", "mm")] * shed.claimed
+        least = "least while the head is inside"
+        if shed.claimed is None:
+            values.append(Value(least, "least_opening", "mm"))
+        else:
+            values += [Value(least, claim=shed.claimed), Value("room left by the head", "room", "mm")]
         note = (
             f"The rapier head has the {shed.height:g} mm that its claim gives it. Where it is higher than the"
             " opening, it is dark orange."
-            if shed.claimed
+            if shed.claimed is not None
             else f"The height of the head is assumed, {shed.height:g} mm: no claim gives it."
         )
         note += (
@@ -261,7 +276,7 @@ def _parts(sketch: Sketch, shed: Shed) -> None:
         with sketch.group(shown=shed.tip):
             sketch.line((-shed.station - 15.0, 0.0), (-shed.station + 15.0, 0.0), role="link belt")
             sketch.line(*_wedge(shed, 0.5 * shed.height), role="body weft", closed=True)
-            if shed.claimed:
+            if shed.claimed is not None:
                 with sketch.group(shown="tight"):
                     sketch.line(*_wedge(shed, 0.5 * shed.height), role="body risk", closed=True)
 

@@ -15,11 +15,12 @@ SCALES = (5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0)  # mm of a
 
 @dataclass(frozen=True)
 class Value:
-    """A number below a drawing that follows a track."""
+    """A number below a drawing that follows a track, or the worst value of a claim, by its place."""
 
     label: str
-    track: str
-    unit: str
+    track: str = ""
+    unit: str = ""
+    claim: int | None = None
     text: str = ""  # at the still position
 
 
@@ -175,7 +176,16 @@ class Sketch:
         self, name: str, title: str, sentence: str, values: Sequence[Value] = (), note: str = ""
     ) -> Figure:
         """The drawing as a figure of the page."""
-        shown = [replace(each, text=f"{self.tracks.at(each.track):.1f}") for each in values]
+        verdicts = self.tracks.trace.verdicts
+        shown = [
+            replace(
+                each,
+                text=f"{self.tracks.at(each.track):.1f}"
+                if each.claim is None
+                else verdicts[each.claim].shown_worst,
+            )
+            for each in values
+        ]
         return Figure(name, title, sentence, self.height, self.svg, shown, note, self.width)
 
 

@@ -6,9 +6,14 @@ loomfmu.general = (value, digits = 7) => {
   const short = text.includes(".") ? text.replace(/\.?0+(?=e|$)/, "") : text;
   return short.replace(/e([+-])(\d)$/, "e$10$2");
 };
-/* A value of a verdict with its unit. */
-loomfmu.shownIn = ({ factor, unit }, value, digits = 7) =>
-  Number.isFinite(value) ? `${loomfmu.general(value * factor, digits)}${unit && ` ${unit}`}` : "no value";
+/* The digits of a value that its error allows, as display/printed.py counts them. */
+loomfmu.digits = (value, error) => {
+  const known = error > 0 && error < Infinity && value, power = number => Math.floor(Math.log10(number));
+  return known ? Math.min(Math.max(power(Math.abs(value)) - power(2 * error) + 1, 1), 7) : 7;
+};
+/* A value of a verdict with its unit, and the digits that its error allows. */
+loomfmu.shownIn = ({ factor, unit }, value, error = 0) =>
+  Number.isFinite(value) ? `${loomfmu.general(Number((value * factor).toPrecision(loomfmu.digits(value * factor, error * factor))))}${unit && ` ${unit}`}` : "no value";
 (() => {
   const { claims } = loomfmu.live.plan.judging, DEGREE = Math.PI / 180;
 
@@ -40,7 +45,7 @@ loomfmu.shownIn = ({ factor, unit }, value, digits = 7) =>
 
   function show(row, claim, verdict) {
     const [word, name, worst, bound, distance, where] = row.cells, { form = claim.forms[0], place: at } = verdict;
-    const shown = value => loomfmu.shownIn(form, value), code = name.querySelector("code"), known = verdict.form;
+    const shown = value => loomfmu.shownIn(form, value, verdict.error), code = name.querySelector("code"), known = verdict.form;
     word.className = { holds: "holds", FAILS: "fails", undecided: "undecided" }[wordOf(verdict)] || "";
     word.replaceChildren();
     const mark = document.createElement("span");
@@ -52,10 +57,10 @@ loomfmu.shownIn = ({ factor, unit }, value, digits = 7) =>
     if (verdict.note) name.append(...line("small", verdict.note));
     const { distance: gap } = verdict, share = 100 * gap / Math.abs(verdict.bound);
     worst.textContent = known ? shown(verdict.worst) : "–";
-    bound.textContent = known ? shown(verdict.bound) : "–";
+    bound.textContent = known ? loomfmu.shownIn(form, verdict.bound) : "–";
     distance.textContent = !known ? "–" : shown(gap)
       + (verdict.bound && Number.isFinite(gap) ? ` (${share < 0 ? "" : "+"}${share.toFixed(1)} %)` : "");
-    if (Number.isFinite(verdict.error)) distance.append(...line("small", `error ${loomfmu.shownIn(form, verdict.error, 1)}`));
+    if (Number.isFinite(verdict.error)) distance.append(...line("small", `error ${loomfmu.shownIn(form, verdict.error, verdict.error)}`));
     where.textContent = "–";
     if (at) {
       const button = document.createElement("button");
@@ -114,6 +119,10 @@ loomfmu.shownIn = ({ factor, unit }, value, digits = 7) =>
       return kept[number];
     });
     conclude(verdicts, !run);
+    for (const output of document.querySelectorAll("output[data-claim]")) { // captions of drawings
+      const { form, worst, error } = verdicts[output.dataset.claim];
+      output.textContent = form ? loomfmu.shownIn(form, worst, error) : "–";
+    }
     loomfmu.live.verdicts = verdicts;
   });
 })();

@@ -10,6 +10,7 @@ from pathlib import Path
 from ... import units
 from ...cosim.claims.claims import called
 from ...display import notebook
+from ...display.printed import brief, digits
 from ...errors import listed
 from ...sweeps.varied import Value
 from ...traces import Verdict
@@ -128,7 +129,10 @@ def shown_goal(goal: Goal, best: Best, place: int) -> str:
     """A goal of a design with its unit."""
     if goal.kind == "claim":
         return best.verdicts[goal.place].shown_distance
-    return _shown(goal, best.goals[place])
+    value, error = (
+        each / units.unit(goal.display).factor for each in (best.goals[place], best.errors[place])
+    )
+    return _shown(goal, best.goals[place], digits(value, error))
 
 
 def shown_error(goal: Goal, best: Best, place: int) -> str:
@@ -142,10 +146,10 @@ def shown_error(goal: Goal, best: Best, place: int) -> str:
     return f"error {shown}"
 
 
-def _shown(goal: Goal, value: float, digits: int = 7) -> str:
+def _shown(goal: Goal, value: float, figures: int = 7) -> str:
     """A value of a goal with its unit."""
     unit = "" if goal.shown_unit == "1" else f" {goal.shown_unit}"
-    return f"{value / units.unit(goal.display).factor:.{digits}g}{unit}"
+    return f"{brief(value / units.unit(goal.display).factor, figures)}{unit}"
 
 
 def shown_gain(found: Optimum, best: Best, limit: Limit) -> str:
@@ -200,7 +204,7 @@ def _claim_rows(found: Optimum, best: Best) -> list[tuple[str, ...]]:
         (
             each.word,
             each.claim,
-            each.shown(each.worst),
+            each.shown_worst,
             each.shown(each.bound),
             each.shown_distance,
             _note(found, best, number),

@@ -20,9 +20,8 @@ from ...cosim.scenes.scene import Scene
 from ...declaring.variables import MOTION, TIME, Component, variables_of
 from ...fmi.native.slicing import settings_of
 from .enclosed import Enclosed
+from .sides import SHAFT, START
 from .spans import TINY, ULP, Floats, both, constant, minus, plus, times
-
-SHAFT, START = "shaft", "start_angle"
 
 
 @dataclass(frozen=True)
