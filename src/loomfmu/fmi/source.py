@@ -13,6 +13,7 @@ import textwrap
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, is_dataclass
 from pathlib import Path
+from threading import RLock
 from types import CodeType, FunctionType
 from typing import Any, get_args
 
@@ -27,6 +28,7 @@ class SourceError(LoomfmuError):
     """A component that uses what cannot be carried into a self-contained module."""
 
 
+one_at_a_time = RLock()  # Python 3.11 may fail with a SystemError where two threads parse
 _flattened: dict[type[Component], str] = {}
 
 

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 from ...declaring.upstream import upstream
 from ...declaring.variables import NOTHING, TIME, Component, variables_of
+from ..source import one_at_a_time
 from .flow import Unfollowed, followed
 from .values import Names, Places, flat
 
@@ -18,9 +19,10 @@ def dependencies(component: type[Component], many_steps: bool = False) -> Mappin
     """
     if component.needs:
         return component.needs
-    if component not in _done:
-        _done[component] = _dependencies(component)
-    return _done[component][many_steps]
+    with one_at_a_time:
+        if component not in _done:
+            _done[component] = _dependencies(component)
+        return _done[component][many_steps]
 
 
 def _dependencies(component: type[Component]) -> tuple[dict[str, Names], dict[str, Names]]:
