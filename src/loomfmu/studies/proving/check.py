@@ -176,6 +176,8 @@ def _check_harmless(told: dict[str, Any]) -> None:
             raise Refused(
                 f"{shown(text)} is no part of a proof: only the package's own mechanisms are proven"
             )
+        if re.search(r"^\s*([/\\~]|\w:[/\\])|(^|[/\\])\.\.([/\\]|$)", text):
+            raise Refused(f"{shown(text)} is a file outside of the certificate")
     for name in told["texts"]:
         if not re.fullmatch(r"(?!\.)[\w .-]{1,99}(/(?!\.)[\w .-]{1,99}){0,9}", name):
             raise Refused(f"{shown(name)} is not the name of a file beside the scene")
