@@ -1,0 +1,58 @@
+"""Rates of outputs that no output gives: by the equations of their mechanisms, with dual numbers.
+
+An output then has a curve between its samples, as one whose rate is recorded. This is for mechanisms without
+a memory, whose outputs follow the shaft: what happens within a step of others may not show at its ends.
+"""
+
+from collections.abc import Iterable
+from contextlib import suppress
+
+import numpy as np
+
+from ..components import COMPONENTS
+from ..declaring.upstream import sources_of, upstream
+from ..declaring.variables import MOTION
+from ..errors import LoomfmuError
+from ..traces import Signals
+from ..traces.extended import Extended
+from .master.grid import Grid
+from .planning.requested import Requested
+from .scenes.scene import Scene
+from .tangents import Tangents
+
+
+class Rates:
+    """The rates of those of some signals of a scene that have none and could have them."""
+
+    def __init__(self, requested: Requested, signals: Iterable[str]):
+        self._tangents: Tangents | None = None
+        scene = requested.scene
+        if wanted := [each for each in dict.fromkeys(signals) if _lacks(scene, each)]:
+            with suppress(LoomfmuError):  # without a compiler, or in a loop
+                self._tangents = Tangents(scene, wanted)
+
+    def added(self, scene: Scene, grid: Grid, run: Signals) -> Signals:
+        """Return a run of this scene, which differs in values alone, on a grid, with these rates."""
+        if self._tangents is None:
+            return run
+        found, count = self._tangents.rates(scene, grid), len(run.time)
+        made = {
+            name: rates[:count]
+            for name, (values, rates) in found.items()
+            if np.array_equal(values[:count], run[name]) and np.isfinite(rates).all()
+        }
+        names = {name: f"rate of {name}" for name in made}
+        return Extended(run, {names[name]: rates for name, rates in made.items()}, names)
+
+
+def _lacks(scene: Scene, signal: str) -> bool:
+    """Return whether an output has no rate, and its equations give one."""
+    owner, _, variable = signal.partition(".")
+    port = scene.instances[owner].fmu.ports[variable]
+    if port.causality != "output" or port.kind != "Real" or port.rate or port.beside.lowest:
+        return False
+    sources = sources_of((wire.source[0], wire.sink[0]) for wire in scene.wires)
+    needed = upstream([owner], sources)
+    components = (scene.instances[name].fmu.component for name in needed)
+    follows = all(each is not None and COMPONENTS.owns(each) and each.keeps != MOTION for each in components)
+    return follows and not any(drive.instance in needed for drive in scene.drives)
