@@ -637,6 +637,15 @@ def test_a_ratio_at_the_samples_is_as_sure_as_its_forces() -> None:
     assert found.word == "undecided" and found.error > found.worst - truth > 0.0
 
 
+def test_what_turns_by_itself_moves_between_the_samples() -> None:
+    """None of its inputs changes, but the time does."""
+    cut = {f"roller__shaft_{name}": False for name in ("angle", "velocity", "acceleration")}
+    text = table("roller", component="DetachingRoller", follow_shaft=False) + "[wires]\n" + wires(**cut)
+    text += claim("below", signal="roller.holding_force", bound=200.0)
+    (found,) = verdicts(text, revolutions=1, steps_per_revolution=37)
+    assert found.word == "undecided" and "is known only at the samples" in found.note
+
+
 def test_a_yes_or_no_output_is_no_surer_than_the_number_that_decides_it(tmp_path: Path) -> None:
     """The belt buckles where its margin, 3e-6 with 76 steps and an error of 2e-4, is below 0."""
     text = 'record = ["weft.travel"]\n' + LOOM + claim("below", signal="belt.buckled", bound=0.5)

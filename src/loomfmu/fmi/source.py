@@ -4,6 +4,7 @@ The component's methods, the physics functions they call and the constants and r
 one after the other, with an `__init__` that lists the declared fields. The module imports `math` alone.
 """
 
+import ast
 import dis
 import hashlib
 import inspect
@@ -12,6 +13,7 @@ import textwrap
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, is_dataclass
 from pathlib import Path
+from threading import RLock
 from types import CodeType, FunctionType
 from typing import Any, get_args
 
@@ -26,6 +28,7 @@ class SourceError(LoomfmuError):
     """A component that uses what cannot be carried into a self-contained module."""
 
 
+one_at_a_time = RLock()  # Python 3.11 may fail with a SystemError where two threads parse
 _flattened: dict[type[Component], str] = {}
 
 
@@ -37,6 +40,13 @@ def flatten(component: type[Component]) -> str:
     if component not in _flattened:
         _flattened[component] = _text(component)
     return _flattened[component]
+
+
+def of_self(node: ast.AST) -> str:
+    """The name of an attribute of `self`, or nothing."""
+    if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "self":
+        return node.attr
+    return ""
 
 
 def digest(component: type[Component]) -> str:

@@ -2,20 +2,27 @@
 
 import json
 import math
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 from scene_texts import claim
 
 from loomfmu.cosim.scenes.scene import parse
+from loomfmu.declaring.declarations import input_, output
+from loomfmu.declaring.variables import NOTHING, Component
 from loomfmu.errors import LoomfmuError
 from loomfmu.studies.proving import certificate
 from loomfmu.studies.proving.proofs import Proofs
 from loomfmu.studies.proving.prove import prove
 
 pytest.importorskip("flint")
+from loomfmu.studies.proving import check as checking
 from loomfmu.studies.proving.check import check
+from loomfmu.studies.proving.intervals import Interval, joined, number
 
 WITHOUT_FRAMES = """
 revolutions = 1
@@ -136,6 +143,51 @@ def test_a_meeting_is_confirmed_at_the_angle_that_the_certificate_names(tmp_path
     covers[0].clear()
     with pytest.raises(LoomfmuError, match="is not a certificate"):
         _check(told, tmp_path)
+
+
+def test_the_start_angle_of_the_scene_is_no_side_of_the_box(loom: Any, tmp_path: Path) -> None:
+    text = loom.text.split("[[claims]]")[0] + claim(
+        "below", name="turn", signal="dobby.rotor_angle", bound=20
+    )
+    certificate.write(prove(parse(text, "loom")), tmp_path / "proof.json")
+    told = json.loads((tmp_path / "proof.json").read_text())
+    assert len(_check(told, tmp_path)) == 1
+    told["scene"] = text.replace("bound = 20", 'bound = "shaft.start_angle"')
+    with pytest.raises(LoomfmuError, match="is not confirmed"):
+        _check(told, tmp_path)
+
+
+def fill(values: list[float], value: float) -> None:
+    values[0] = value
+
+
+def fill_both(values: list[float], value: float) -> None:
+    fill(values, value)
+    values[1] = value
+
+
+@dataclass(slots=True)
+class Filling(Component):
+    """A mechanism whose functions write to lists."""
+
+    keeps = NOTHING
+    x: float = input_("1", 0.0, "A number")
+    sum: float = output("1", "A sum")
+
+    def initialize(self, time: float) -> int:
+        """Compute."""
+        values = [0.0, 0.0]
+        fill_both(values, self.x + 5.0)
+        self.sum = values[0] + values[1]
+        return 0
+
+
+def test_the_check_keeps_what_functions_write_to_lists() -> None:
+    module = checking._module(Filling, ["sum"], SimpleNamespace(start=lambda _name: 0.0))
+    Interval.sides = 1
+    placed = joined(partial(checking._started, Filling, module, ["sum"], [0]))
+    (found,) = placed({"x": Interval((0.0, 1.0), [(1.0, 1.0)]), "sum": 0.0}, number(0.0))
+    assert found.ends == pytest.approx((10.0, 12.0)) and found.ends[0] <= 10.0 <= 12.0 <= found.ends[1]
 
 
 def test_a_slope_that_is_0_at_an_end_of_a_box_is_confirmed(tmp_path: Path) -> None:

@@ -6,8 +6,10 @@ import pytest
 import loomfmu
 from loomfmu.cli import main
 from loomfmu.cosim.claims.conditions import FALLS, IN, OUT, RISES, UNKNOWN, Spans, Sum
+from loomfmu.cosim.reading import requested
 from loomfmu.cosim.scenes.scene import Scene, parse
 from loomfmu.errors import LoomfmuError
+from loomfmu.studies.proving.chain import Chain
 from loomfmu.studies.proving.proofs import Proofs
 from loomfmu.studies.proving.proofs_shown import draw
 from loomfmu.studies.proving.prove import prove
@@ -92,6 +94,19 @@ def test_a_start_up_and_a_table_of_inputs_are_proven_over_time(loom: Scene, text
     lowest = loomfmu.evaluate(scene).claims[0].worst
     above = parse(scene.text.replace("bound = -0.6", f"bound = {lowest + 1e-4}", 1), "loom")
     assert prove(above, claims=["margin"]).claims[0].status == "refuted"
+
+
+def test_the_sense_of_a_turn_is_that_of_the_range_not_of_the_scene(loom: Scene) -> None:
+    table = '[inputs]\n"belt.yarn_tension" = [[0, 0], [0.25, 0], [0.3, 9]]\n[[claims]]'
+    text = loom.text.replace("[[claims]]", table, 1).replace('bound = "shaft.speed"', "bound = 1")
+    boxes = np.repeat(np.array([[0.02, -60.0], [0.04, -60.0]])[..., None], 2, axis=-1)
+    margins = []
+    for speed in ("600 rev/min", "-600 rev/min"):
+        scene = requested(parse(text.replace("600 rev/min", speed), "loom"), None, "native").scene
+        chain = Chain(scene, ["belt.margin"], {("shaft", "speed"): 1})
+        margins.append(chain.numbers(boxes)["belt.margin"].values)
+        assert chain.number("shaft.start_angle", {}, boxes).values.tolist() == 2 * [[0.0, 0.0]]
+    assert np.array_equal(*margins)
 
 
 def test_a_loom_that_turns_backwards_is_proven_at_its_own_angles(loom: Scene) -> None:

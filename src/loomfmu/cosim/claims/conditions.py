@@ -212,7 +212,7 @@ def present(signal: str, run: Wired, sense: int) -> str:
 def remembers(variable: Variable) -> bool:
     """Return whether an output holds what was before, such as an extreme."""
     held = variable.one_way and variable.causality == "output" and variable.variability != "fixed"
-    return held and variable.depends != ()
+    return held and not variable.constant
 
 
 def names_of(conditions: Sequence[Condition]) -> list[str]:

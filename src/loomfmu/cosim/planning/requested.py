@@ -44,9 +44,8 @@ def beside_of(scene: Scene, signal: str) -> Beside:
     driven = {drive.variable for drive in scene.drives if drive.instance == instance}
     steady = variable in driven
     if facts is not None and facts.component.keeps != MOTION and variable not in driven:
-        declared = facts.variables[variable]
-        needed = {TIME} if declared.depends is None else {*declared.depends}
-        steady = not needed & {TIME, *wired, *(driven - {declared.follows})}
+        follows = facts.variables[variable].follows
+        steady = facts.needs[variable].isdisjoint({TIME, *wired, *(driven - {follows})})
     return port.beside._replace(lowest=variable, highest=variable) if steady else port.beside
 
 

@@ -176,13 +176,6 @@ def comment(text: str, indent: str) -> list[str]:
     return [f"{indent}/* {lines[0]}", *(f"{indent} * {line}".rstrip() for line in lines[1:]), f"{indent} */"]
 
 
-def of_self(node: ast.AST) -> str:
-    """The name of an attribute of `self`, or nothing."""
-    if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "self":
-        return node.attr
-    return ""
-
-
 KEYWORDS = frozenset(
     (
         "auto",

@@ -4,6 +4,7 @@ import ast
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
+from ..source import of_self
 from .c_assignments import Assignments, running
 from .c_code import (
     NAMES,
@@ -17,7 +18,6 @@ from .c_code import (
     c_name,
     comment,
     fits,
-    of_self,
     shown,
     sizes,
 )

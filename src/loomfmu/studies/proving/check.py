@@ -105,7 +105,7 @@ class _Check:
                 raise Refused(f"{key} varies twice")
             self._sides |= targets
         self._equations = told["equations"]
-        within = f" of {scene.periods:g} revolution{'s' * (scene.periods != 1)}"
+        within = f" of {scene.periods:.15g} revolution{'s' * (scene.periods != 1)}"
         for (key, _ends), (low, high) in zip(told["over"].items(), self._ends, strict=True):
             about = varied(scene, key)
             first, last = (units.exact(end, about.display) for end in (low, high))
@@ -348,8 +348,8 @@ class _Mechanisms:
             )
             try:
                 wide, here = (place(each, time) for each in given)
-            except (TypeError, NameError) as error:
-                raise Refused(f"{name} cannot be confirmed: {error}") from None
+            except (TypeError, NameError):
+                raise Refused(f"{name} computes with what the check has no intervals for") from None
             for variable, a, b in zip(wanted, wide, here, strict=True):
                 middle[f"{name}.{variable}"] = b
                 found[f"{name}.{variable}"] = _narrowed(a, b, box)
@@ -360,8 +360,9 @@ class _Mechanisms:
         total = number(form.constant)
         for share, name in form.terms:
             instance, variable = name.split(".")
-            start = self._scene.instances[instance].start(variable) if name not in found else 0.0
-            total = total + share * found.get(name, number(float(start or 0.0)))
+            fixed = name not in found or name == f"{SHAFT}.{START}"  # that of the scene, not of the box
+            start = self._scene.instances[instance].start(variable) if fixed else 0.0
+            total = total + share * (number(float(start or 0.0)) if fixed else found[name])
         return total
 
 
@@ -409,7 +410,27 @@ def _module(component: Any, wanted: Sequence[str], instance: Instance) -> dict[s
     space: dict[str, Any] = {"number": number, **constants, **MATH}
     tree.body = [node for node in tree.body if not isinstance(node, ast.ImportFrom)]
     exec(compile(ast.fix_missing_locations(_Numbers().visit(tree)), component.__name__, "exec"), space)
-    for node in tree.body:
-        if isinstance(node, ast.FunctionDef):
-            space[node.name] = joined(space[node.name])
+    functions = [node for node in tree.body if isinstance(node, ast.FunctionDef)]
+    for name in {node.name for node in functions} - _writers(functions):
+        space[name] = joined(space[name])
     return space
+
+
+def _writers(functions: Sequence[ast.FunctionDef]) -> set[str]:
+    """The functions that write to a list that they are given, themselves or through others.
+
+    Their ways are those of their callers: each way needs a list of its own.
+    """
+    found, known = set[str](), -1
+    while len(found) > known:
+        known = len(found)
+        for function in functions:
+            given = {each.arg for each in function.args.args}
+            for node in ast.walk(function):
+                match node:
+                    case ast.Subscript(value=ast.Name(id=name), ctx=ast.Store()) if name in given:
+                        found.add(function.name)
+                    case ast.Call(func=ast.Name(id=called), args=args) if called in found:
+                        if given & {each.id for each in args if isinstance(each, ast.Name)}:
+                            found.add(function.name)
+    return found
