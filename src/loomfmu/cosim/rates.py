@@ -11,7 +11,7 @@ import numpy as np
 
 from ..components import COMPONENTS
 from ..declaring.upstream import sources_of, upstream
-from ..declaring.variables import MOTION
+from ..declaring.variables import NOTHING
 from ..errors import LoomfmuError
 from ..traces import Signals
 from ..traces.extended import Extended
@@ -49,10 +49,10 @@ def _lacks(scene: Scene, signal: str) -> bool:
     """Return whether an output has no rate, and its equations give one."""
     owner, _, variable = signal.partition(".")
     port = scene.instances[owner].fmu.ports[variable]
-    if port.causality != "output" or port.kind != "Real" or port.rate or port.beside.lowest:
+    if port.causality != "output" or port.kind != "Real" or port.rate:
         return False
     sources = sources_of((wire.source[0], wire.sink[0]) for wire in scene.wires)
     needed = upstream([owner], sources)
     components = (scene.instances[name].fmu.component for name in needed)
-    follows = all(each is not None and COMPONENTS.owns(each) and each.keeps != MOTION for each in components)
+    follows = all(each is not None and COMPONENTS.owns(each) and each.keeps == NOTHING for each in components)
     return follows and not any(drive.instance in needed for drive in scene.drives)
