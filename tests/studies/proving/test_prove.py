@@ -2,6 +2,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scene_texts import claim
 
 import loomfmu
 from loomfmu.cli import main
@@ -94,6 +95,16 @@ def test_a_start_up_and_a_table_of_inputs_are_proven_over_time(loom: Scene, text
     lowest = loomfmu.evaluate(scene).claims[0].worst
     above = parse(scene.text.replace("bound = -0.6", f"bound = {lowest + 1e-4}", 1), "loom")
     assert prove(above, claims=["margin"]).claims[0].status == "refuted"
+
+
+def test_nothing_is_proven_of_an_input_that_follows_a_table(loom: Scene) -> None:
+    table = '[inputs]\n"heald_1.load" = [[0, 10], [1, 20]]\n'
+    text = loom.text.split("[[claims]]")[0] + table + claim("below", signal="heald_1.load", bound=15)
+    (found,) = prove(parse(text, "loom")).claims
+    assert (found.status, found.why) == (
+        "cannot be proven",
+        "heald_1.load is an input that follows a table or a wire",
+    )
 
 
 def test_the_sense_of_a_turn_is_that_of_the_range_not_of_the_scene(loom: Scene) -> None:

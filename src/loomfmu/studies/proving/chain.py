@@ -20,7 +20,7 @@ from ...cosim.scenes.scene import Scene
 from ...declaring.variables import MOTION, TIME, Component, variables_of
 from ...fmi.native.slicing import settings_of
 from .enclosed import Enclosed
-from .sides import SHAFT, START
+from .sides import SHAFT, START, outputs_of
 from .spans import TINY, ULP, Floats, both, constant, minus, plus, times
 
 
@@ -127,7 +127,7 @@ class Chain:
     """
 
     def __init__(self, scene: Scene, signals: Sequence[str], sides: Mapping[tuple[str, str], int]):
-        needed = prune(scene, [each for each in signals if _is_output(scene, each)], keep_shafts=True)
+        needed = prune(scene, outputs_of(scene, signals), keep_shafts=True)
         if SHAFT not in scene.instances:
             raise Unprovable("the scene has no shaft")
         shaft = scene.instances[SHAFT]
@@ -220,11 +220,6 @@ class Chain:
         if side := self._sides.get((instance, variable)):  # side 0 is no parameter of the scene
             return Number.side(side, boxes)
         return Number.of(float(self._scene.instances[instance].start(variable) or 0.0), boxes)
-
-
-def _is_output(scene: Scene, name: str) -> bool:
-    instance, _, variable = name.partition(".")
-    return scene.instances[instance].fmu.ports[variable].causality == "output"
 
 
 def _checked(instance: Instance) -> type[Component]:

@@ -50,7 +50,7 @@ from ...fmi.native.translate import ENTRIES
 from ...sweeps.varied import varied
 from . import FORMAT, MOST_REVOLUTIONS
 from .intervals import ALL, MATH, Ends, Interval, Unknown, floor, joined, number
-from .sides import SHAFT, START, check_side
+from .sides import SHAFT, START, check_side, outputs_of
 
 FINE = 0.02  # [rad]: so narrow must a box be that a mechanism is in one of its phases
 FINER = 8  # bisections of a box that this arithmetic, which is wider, may need on top
@@ -296,12 +296,7 @@ class _Mechanisms:
 
     def __init__(self, scene: Scene, names: Sequence[str], sides: dict[Any, int], equations: dict[str, str]):
         self._scene, self._sides = scene, sides
-        outputs = [
-            n
-            for n in names
-            if scene.instances[n.split(".")[0]].fmu.ports[n.split(".")[1]].causality == "output"
-        ]
-        needed = prune(scene, outputs, keep_shafts=True).scene
+        needed = prune(scene, outputs_of(scene, names), keep_shafts=True).scene
         order, lagged = step_order(needed.instances, needed.wires)
         if lagged or needed.drives:
             raise Refused("the scene has a loop or a table of inputs")

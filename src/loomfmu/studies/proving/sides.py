@@ -1,7 +1,11 @@
-"""The sides of a proof's box: what may vary. The prover and the check of its certificates read it alike."""
+"""The names that a proof is about: its sides, which vary, and what its claims name.
+
+The prover and the check of its certificates read them alike.
+"""
 
 from collections.abc import Iterable
 
+from ...cosim.claims.conditions import Unprovable
 from ...cosim.reading import requested
 from ...cosim.scenes.scene import Scene, differing
 from ...errors import LoomfmuError
@@ -28,3 +32,19 @@ def check_side(scene: Scene, about: Varied, ends: Iterable[float]) -> None:
             name, _, variable = target.partition(".")
             if (name, variable) not in fed and moved.instances[name].effect(variable) not in (None, end):
                 raise LoomfmuError(f"{refused}: {target} keeps a value of its own")
+
+
+def outputs_of(scene: Scene, names: Iterable[str]) -> list[str]:
+    """Return the outputs among what claims name; all others have their start values throughout.
+
+    Raises Unprovable for an input that takes its values from elsewhere.
+    """
+    found = []
+    fed = {wire.sink for wire in scene.wires} | {(each.instance, each.variable) for each in scene.drives}
+    for name in names:
+        owner, _, variable = name.partition(".")
+        if (owner, variable) in fed:
+            raise Unprovable(f"{name} is an input that follows a table or a wire")
+        if scene.instances[owner].fmu.ports[variable].causality == "output":
+            found.append(name)
+    return found
