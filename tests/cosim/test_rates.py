@@ -12,6 +12,7 @@ from loomfmu.cosim.planning.requested import Requested
 from loomfmu.cosim.rates import Rates
 from loomfmu.cosim.reading import requested
 from loomfmu.cosim.scenes.scene import Scene, parse
+from loomfmu.cosim.tangents import Tangents
 
 LOOM = """
 revolutions = 2
@@ -42,9 +43,9 @@ def read(*parts: str) -> Scene:
 
 @pytest.mark.parametrize("signal", SIGNALS)
 def test_a_rate_is_the_derivative_of_the_samples(signal: str) -> None:
-    scene = read()
+    scene = read(claim("below", signal=signal, bound=1e9))
     fine = requested(scene, {"steps_per_revolution": 14400}, "native").scene
-    tangents = Rates(Requested(scene), [signal])._tangents
+    tangents = _tangents(scene)
     assert tangents
     values, rates = tangents.rates(fine, uniform(fine))[signal]
     step = fine.step_size
@@ -85,6 +86,11 @@ def test_a_claim_holds_in_a_run_of_either_flavour(tmp_path: Path, flavour: str) 
     ],
 )
 def test_rates_of_what_has_a_memory_or_a_table_are_not_known(signal: str, more: str) -> None:
-    text = LOOM.split("ripple")[0] + more if "component" in more else LOOM + more
-    scene = requested(parse(text, "loom"), None, "native").scene
-    assert Rates(Requested(scene), [signal])._tangents is None
+    text = LOOM.split("ripple")[0] + more + "\n" if "component" in more else LOOM + more
+    judged = claim("below", signal=signal, bound=1e9)
+    assert _tangents(requested(parse(text + judged, "loom"), None, "native").scene) is None
+
+
+def _tangents(scene: Scene) -> Tangents | None:
+    asked = Requested(scene)
+    return Rates(asked, asked.claims)._tangents

@@ -7,7 +7,6 @@ from collections import OrderedDict
 from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import ExitStack
 from functools import cached_property, partial
-from itertools import chain
 from pathlib import Path
 from time import perf_counter
 from typing import Any, Literal, NamedTuple, get_args
@@ -79,9 +78,7 @@ class Pattern:
 
     @cached_property
     def _rates(self) -> Rates:
-        return Rates(
-            self._requested, chain.from_iterable(each.signals(self._requested) for each in self._all)
-        )
+        return Rates(self._requested, self._all)
 
     def stepping(self, signals: Sequence[str]) -> Stepping:
         """Return the stepping of the scene with only the parts that these signals need."""

@@ -15,6 +15,8 @@ from ..declaring.variables import NOTHING
 from ..errors import LoomfmuError
 from ..traces import Signals
 from ..traces.extended import Extended
+from .claims.bounded import Bounded
+from .claims.claim import Claim
 from .master.grid import Grid
 from .planning.requested import Requested
 from .scenes.scene import Scene
@@ -22,12 +24,19 @@ from .tangents import Tangents
 
 
 class Rates:
-    """The rates of those of some signals of a scene that have none and could have them."""
+    """The rates of signals that claims bound, and that have none: of those that no other claim is on."""
 
-    def __init__(self, requested: Requested, signals: Iterable[str]):
+    def __init__(self, requested: Requested, claims: Iterable[Claim]):
         self._tangents: Tangents | None = None
+        bounded, others = dict[str, None](), set[str]()
+        for claim in claims:
+            signals = dict.fromkeys(claim.signals(requested))
+            if isinstance(claim, Bounded):
+                bounded |= signals
+            else:
+                others |= signals.keys()  # these take a jump of the samples for one, not for a curve
         scene = requested.scene
-        if wanted := [each for each in dict.fromkeys(signals) if _lacks(scene, each)]:
+        if wanted := [each for each in bounded if each not in others and _lacks(scene, each)]:
             with suppress(LoomfmuError):  # without a compiler, or in a loop
                 self._tangents = Tangents(scene, wanted)
 
