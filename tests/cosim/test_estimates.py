@@ -315,13 +315,14 @@ def test_two_coarser_runs_may_agree_by_chance() -> None:
 
 
 def test_a_value_known_only_at_the_samples_is_undecided_unless_they_alone_are_judged() -> None:
-    force = {"signal": "heald_1.inertia_force", "bound": 1000}
+    force = {"signal": "damper_1.spring_force", "bound": 10000}
     claims = claim("below", **force), claim("below", **force, at_samples=True)
     (_, unknown, sampled), (*_, fine) = (
-        of_loom(steps, 'weave = "10/01"\n', *claims, revolutions=2) for steps in (90, 90 * 64)
+        of_loom(steps, 'weave = "10/01"\ndampers = true\n', *claims, revolutions=2)
+        for steps in (360, 360 * 16)
     )
     assert (unknown.word, sampled.word) == ("undecided", "holds")
-    assert abs(sampled.worst - fine.worst) <= sampled.error <= 0.05 * sampled.worst
+    assert abs(sampled.worst - fine.worst) <= sampled.error <= 0.1 * sampled.worst
 
 
 @pytest.mark.parametrize("values", [{}, {"grid": "windows"}, {"steps_per_revolution": 301}])
@@ -643,7 +644,7 @@ def test_what_turns_by_itself_moves_between_the_samples() -> None:
     text = table("roller", component="DetachingRoller", follow_shaft=False) + "[wires]\n" + wires(**cut)
     text += claim("below", signal="roller.holding_force", bound=200.0)
     (found,) = verdicts(text, revolutions=1, steps_per_revolution=37)
-    assert found.word == "undecided" and "is known only at the samples" in found.note
+    assert found.holds and abs(found.worst - 118.661958) <= found.error <= 1.0  # from 20,000 steps
 
 
 def test_a_yes_or_no_output_is_no_surer_than_the_number_that_decides_it(tmp_path: Path) -> None:

@@ -28,6 +28,7 @@ from .planning.plan import InMemory, Plan, Stepping, build_needed, early_end, ex
 from .planning.requested import Requested
 from .planning.windows import window_grid
 from .provenance import attributes
+from .rates import Rates
 from .reading import check_bounds, check_set, requested
 from .recorded import finish, kept_readable, own_path, progress_of, target_of, writer_of, written_at
 from .results import Evaluation, Result
@@ -75,6 +76,10 @@ class Pattern:
         self.values = Values(self.scene)
         self._steps = 0  # in a revolution, as they were chosen last
 
+    @cached_property
+    def _rates(self) -> Rates:
+        return Rates(self._requested, self._all)
+
     def stepping(self, signals: Sequence[str]) -> Stepping:
         """Return the stepping of the scene with only the parts that these signals need."""
         key = tuple(signals)
@@ -102,24 +107,26 @@ class Pattern:
         return self.stepping(signals).in_memory(scene, grid)
 
     def _on(self, scene: Scene, grid: Grid) -> Signals:
-        return self._in_memory(scene, self.judged, grid).recording
+        return self._rates.added(scene, grid, self._in_memory(scene, self.judged, grid).recording)
 
     def _judged(self, trace: Signals) -> tuple[Verdict, ...]:
         return tuple(claim.judge(trace) for claim in self._all)
 
-    def _estimated(self, scene: Scene, coarser: Coarser, trace: Signals) -> tuple[Verdict, ...]:
-        return self._estimates.of(scene, trace, self._judged(trace), coarser)[: len(self.claims)]
+    def _estimated(self, scene: Scene, grid: Grid, coarser: Coarser, trace: Signals) -> tuple[Verdict, ...]:
+        run = self._rates.added(scene, grid, trace)
+        return self._estimates.of(scene, run, self._judged(run), coarser)[: len(self.claims)]
 
     def evaluate(self, scene: Scene, errors: Errors = "all") -> Evaluation:
         """Run what the claims of the scene need, and judge them."""
         scene, known, chosen = self._with_steps(scene, errors)
         grid = self.grid(scene, self.judged)
         found = self._in_memory(scene, self.judged, grid)
-        verdicts = self._judged(found.recording)
-        near = self._estimates.near(scene, found.recording, verdicts)
+        run = self._rates.added(scene, grid, found.recording)
+        verdicts = self._judged(run)
+        near = self._estimates.near(scene, run, verdicts)
         wanted: Collection[int] = {"all": range(len(verdicts)), "near": near, "none": ()}[errors]
         coarser = known or self._estimates.coarser(scene, grid, wanted)
-        verdicts = self._estimates.of(scene, found.recording, verdicts, coarser)
+        verdicts = self._estimates.of(scene, run, verdicts, coarser)
         return Evaluation(
             scene,
             verdicts[: len(self.claims)],
@@ -207,7 +214,7 @@ class Pattern:
                     except KeyboardInterrupt:
                         raise Interrupted from None
             # third-party instances are still there: one that crashes when it is freed takes nothing with it
-            judge = partial(self._estimated, scene, coarser)
+            judge = partial(self._estimated, scene, plan.grid, coarser)
             verdicts, trace = finish(lambda trace: remarked(judge(trace), remarks), writer, path, early)
         return Result(
             scene,

@@ -62,7 +62,10 @@ class _Instance:
     """A component with dual numbers, in memory."""
 
     def __init__(self, instance: Instance, component: type[Component]):
-        library = ctypes.PyDLL(str(instance.fmu.library))
+        fmu = instance.fmu.in_flavour("native")
+        if not fmu.built or fmu.flavour != "native":
+            raise LoomfmuError(f"{instance.name} has no derivatives: only our own native FMUs have them")
+        library = ctypes.PyDLL(str(fmu.library))
         library.loomfmu_dual.restype = ctypes.POINTER(_Dual)
         table = library.loomfmu_dual().contents
         self.name, self.part, self.library = instance.name, table.part, library
@@ -182,20 +185,9 @@ class Tangents:
 
         Communication points stay where they are in revolutions, so that their times change with the speed.
         """
-        for each in self._instances:
-            each.set(scene.instances[each.name], seeds)
-        span = grid.span(0, grid.steps)
         stretch = 0.0 if scene.step is not None else -seeds.get(("shaft", "speed"), 0.0) / scene.speed
-        driven = np.zeros((grid.steps + 1, len(self._drives)))
-        for column, drive in enumerate(self._drives):
-            driven[:, column] = drive.along(np.concatenate([[0.0], span.turns]))
-        starts, sizes = (np.stack([each, stretch * each], axis=1) for each in (span.starts, span.sizes))
-        rows = np.empty((grid.steps + 1, len(self._kept), 2))
-        self._library.step_tangents(
-            ctypes.byref(self._plan),
-            ctypes.c_int64(grid.steps),
-            *(ctypes.c_void_p(each.ctypes.data) for each in (starts, sizes, driven, rows)),
-        )
+        span = grid.span(0, grid.steps)
+        rows = self._rows(scene, grid, seeds, stretch * span.starts, stretch * span.sizes)
         reals = np.zeros_like(recording.reals)
         for place, (signal, _address) in enumerate(self._kept):
             reals[:, recording.column(signal)] = rows[: len(reals), place, 1]
@@ -203,10 +195,37 @@ class Tangents:
             raise LoomfmuError(f"{scene.name}: the derivative is not finite")
         return Direction(recording, stretch * recording.time, reals, seeds)
 
+    def rates(self, scene: Scene, grid: Grid) -> dict[str, tuple[Floats, Floats]]:
+        """Return the samples of each signal, and their derivatives by the time.
+
+        These are exact where no mechanism remembers anything: where outputs depend on the time and on inputs.
+        """
+        ones = np.ones(grid.steps)
+        rows = self._rows(scene, grid, {}, ones, 0.0 * ones)
+        return {signal: (rows[:, n, 0], rows[:, n, 1]) for n, (signal, _place) in enumerate(self._kept)}
+
+    def _rows(self, scene: Scene, grid: Grid, seeds: Seeds, starts: Floats, sizes: Floats) -> Floats:
+        """Step along some seeds, and derivatives of the starts and the sizes of the steps: values and
+        derivatives of what is kept, (samples, signals, 2)."""
+        for each in self._instances:
+            each.set(scene.instances[each.name], seeds)
+        span = grid.span(0, grid.steps)
+        driven = np.zeros((grid.steps + 1, len(self._drives)))
+        for column, drive in enumerate(self._drives):
+            driven[:, column] = drive.along(np.concatenate([[0.0], span.turns]))
+        times = [np.stack(each, axis=1) for each in ((span.starts, starts), (span.sizes, sizes))]
+        rows = np.empty((grid.steps + 1, len(self._kept), 2))
+        self._library.step_tangents(
+            ctypes.byref(self._plan),
+            ctypes.c_int64(grid.steps),
+            *(ctypes.c_void_p(each.ctypes.data) for each in (*times, driven, rows)),
+        )
+        return rows
+
 
 def _dual(instance: Instance) -> _Instance:
     component = instance.fmu.component
-    if component is None or not instance.fmu.built or instance.fmu.flavour != "native":
+    if component is None:
         raise LoomfmuError(f"{instance.name} has no derivatives: only our own native FMUs have them")
     return _Instance(instance, component)
 

@@ -260,15 +260,15 @@ def test_a_claim_that_holds_nowhere_is_named(capsys: pytest.CaptureFixture[str])
 
 
 def test_a_claim_that_is_undecided_in_every_design_is_named_with_its_reason() -> None:
-    claim = 'kind = "below"\nname = "inertia"\nsignal = "heald_1.inertia_force"\nbound = "5 kN"\n'
-    scene = Path("inertia.toml")
+    claim = 'kind = "below"\nname = "springs"\nsignal = "damper_1.spring_force"\nbound = "5 kN"\n'
+    scene = Path("springs.toml")
     scene.write_text(f"{DEMO.read_text().partition('[[claims]]')[0]}[[claims]]\n{claim}")
     text = 'maximise = "heald.stroke"\n[choices]\n"heald.stroke" = ["90 mm", "98 mm"]'
     found = searched(text, scene)
     assert str(found) == (
         "None of the 2 designs that were tried meets all claims."
-        " No design meets 'inertia', undecided in 2 of them:"
-        " heald_1.inertia_force is known only at the samples;"
+        " No design meets 'springs', undecided in 2 of them:"
+        " damper_1.spring_force is known only at the samples;"
         " set at_samples = true in the claim to judge these alone."
     )
 
@@ -293,7 +293,7 @@ def test_a_goal_may_be_the_distance_of_a_claim() -> None:
 
 
 def test_a_goal_of_a_signal_is_spelt_and_has_an_error() -> None:
-    """The lowest acceleration is that of finer samples; between them nothing is known."""
+    """The lowest acceleration is that of finer samples, but for what these miss: the curve between them is known."""
     text = """maximise = "lowest heald_1.acceleration"
 [choices]
 "dobby.law" = ["sloped_line", "sloped_sine"]"""
@@ -301,8 +301,9 @@ def test_a_goal_of_a_signal_is_spelt_and_has_an_error() -> None:
     setting = {"revolutions": 1, "steps_per_revolution": 5760, "dobby.law": found.values["dobby.law"]}
     run = evaluate(DEMO, set=setting, values=["heald_1.acceleration"], errors="none").trace
     (error,) = found.front[0].errors
-    assert abs(found.goal - np.min(run["heald_1.acceleration"])) <= 1e-2 * abs(found.goal)
-    assert error == math.inf and "m/s2 (error unknown)." in str(found)
+    missed = 1e-6 * abs(found.goal)  # about (2 pi / 5760)^2 / 8 of the fourth harmonic
+    assert abs(found.goal - np.min(run["heald_1.acceleration"])) <= error + missed
+    assert 0.0 < error < 1e-4 * abs(found.goal)
 
 
 def test_whole_numbers_may_vary() -> None:

@@ -4,16 +4,15 @@ Where the rates of all signals are known, so are those of their sums, products a
 samples an expression thus follows a curve of its own, as a recorded signal does.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from functools import reduce
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...errors import LoomfmuError, listed
-from ...traces import Channel, Column, Signals
+from ...traces import Signals
+from ...traces.extended import Extended
 from ...traces.signals import Floats
 from ...traces.verdict import place_text
 from .expressions import Expression, Node, known_as
@@ -22,19 +21,17 @@ Jet = list[Floats]  # values, then rates and second rates as far as they are kno
 RATES = "rate of ", "second rate of "
 
 
-class Expressed(Signals):
+class Expressed(Extended):
     """A run with one expression more, under its text. Raises LoomfmuError where it divides by 0."""
 
     def __init__(self, run: Signals, expression: Expression):
-        self._run, self._node = run, expression.node
-        self.name, self.cut_short = run.name, run.cut_short
-        self.wires, self.fmus, self.own_speeds = run.wires, run.fmus, run.own_speeds
+        super().__init__(run, {}, {}, expression.unit)
+        self._node, self._display = expression.node, self._shown_in(expression)
         values, *rates = self._jet(self._node)
         names = [str(expression), *(f"{each}{expression}" for each in RATES)]
         self._made = dict(zip(names, [values, *rates], strict=False))
         self._rates = dict(pairwise(self._made))
         self._beside = self._others(names[0])
-        self._unit, self._display = expression.unit, self._shown_in(expression)
 
     # ---- the expression
 
@@ -139,60 +136,11 @@ class Expressed(Signals):
         alike = (each for each in _all_signals(expression.node) if each.dimension == dimension)
         return next((self._run.display(each.text) for each in alike), expression.unit)
 
-    # ---- as a run
-
-    @property
-    def shared(self) -> dict[Any, Any]:
-        """Data that the claims on the run share."""
-        return self._run.shared
-
-    @property
-    def time(self) -> Floats:
-        """Time of the samples [s]."""
-        return self._run.time
-
-    @property
-    def shaft_angle(self) -> Floats:
-        """Shaft angle of the samples, not wrapped [rad]."""
-        return self._run.shaft_angle
-
-    def __getitem__(self, signal: str) -> NDArray[Any]:
-        return self._made[signal] if signal in self._made else self._run[signal]
-
-    def __contains__(self, signal: object) -> bool:
-        return signal in self._made or signal in self._run
-
-    def __iter__(self) -> Iterator[str]:
-        return iter([*self._run, *self._made])
-
-    def channel(self, signal: str) -> Channel:
-        """The channel of a signal, or of the expression. Raises LoomfmuError for one that is not there."""
-        if signal not in self._made:
-            return self._run.channel(signal)
-        return Channel("", signal, self._unit, self._display, signal)
-
-    def columns(self, signals: Any) -> list[Column]:
-        """The time of the samples, then the values of some signals."""
-        time, *_none = self._run.columns([])
-        return [time, *(self._column(each) for each in signals)]
-
-    def _column(self, signal: str) -> Column:
-        made = self._made.get(signal)
-        return self._run.columns([signal])[1] if made is None else Column.of(made)
-
-    def rate(self, signal: str) -> str | None:
-        """The signal that is this one's time derivative, if there is one."""
-        return self._rates.get(signal) if signal in self._made else self._run.rate(signal)
-
     def beside(self, signal: str, role: str) -> str | None:
         """The signal that says more of this one in a role of `Beside`, if there is one."""
-        if signal not in self._made:
-            return self._run.beside(signal, role)
-        return self._beside.get(role) if signal == next(iter(self._made)) else None
-
-    def parameter(self, signal: str) -> float:
-        """A parameter of an instance as it was set."""
-        return self._run.parameter(signal)
+        if signal == next(iter(self._made)):
+            return self._beside.get(role)
+        return super().beside(signal, role)
 
 
 def _product(one: Jet, other: Jet) -> Jet:

@@ -71,7 +71,7 @@ EXPORT void step_tangents(const struct tangents *plan, int64_t steps, const dual
                 memcpy(part->copies[j].to, part->copies[j].from, part->copies[j].size);
             }
             if (step == 0) {
-                (void)part->part->initialize(part->component, (dual){0.0, 0.0});
+                (void)part->part->initialize(part->component, (dual){0.0, steps > 0 ? starts->tangent : 0.0});
             } else {
                 (void)part->part->step(part->component, starts[step - 1], sizes[step - 1]);
             }
