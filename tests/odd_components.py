@@ -79,6 +79,25 @@ class Complaining(Component):
 
 
 @dataclass(slots=True)
+class Undeclared(Component):
+    """A problem that is not declared after 0.1 s."""
+
+    value: float = output("1", "Value")
+
+    def initialize(self, time: float) -> int:
+        """Begin at 0."""
+        self.value = 0.0
+        return 0
+
+    def step(self, time: float, step_size: float) -> int:
+        """Complain."""
+        problem = 0
+        if time > 0.1:
+            problem = 5
+        return problem
+
+
+@dataclass(slots=True)
 class Switched(Component):
     """A value that an integer and a boolean input make."""
 
@@ -103,7 +122,7 @@ class Switched(Component):
         return 0
 
 
-ODD = (Overflowing, Raising, Complaining, Switched)
+ODD = (Overflowing, Raising, Complaining, Undeclared, Switched)
 
 
 @pytest.fixture

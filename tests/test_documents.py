@@ -212,7 +212,7 @@ LONG = (
     "optimizing",
     "fitting",
 )  # followed by the slow tests
-FOLLOWED = ("tour", "scenes", "how_sure", "traces", *LONG)
+FOLLOWED = ("tour", "scenes", "how_sure", "traces", "own_claim", *LONG)
 NOT_RUN = {  # pages with commands or Python of which no test runs all, and why
     "importing": "other tools, which tests/foreign runs where they are installed",
     "sweeps": "its Python reads the results of a sweep that takes minutes",
@@ -240,6 +240,9 @@ def test_the_docs_can_be_followed(
         assert cli.main(["run", "wl680_3600.toml"]) == 0
         Path("measured.csv").write_bytes((HOUSE / "docs" / "measured.csv").read_bytes())
         Path("expected.h5").write_bytes(Path("results/wl680_3600.h5").read_bytes())
+    for text in (*blocks(page, "python"), *blocks(page, "toml")):
+        if file := re.match(r"# (\w+\.(?:py|toml))\n", text):
+            Path(file[1]).write_text(text)
     for line in re.findall(r"^loomfmu .*$", "".join(blocks(page, "sh")), re.MULTILINE):
         expected = int("# exit status 1" in line)
         assert cli.main(shlex.split(line, comments=True)[1:]) == expected, line

@@ -222,6 +222,20 @@ def test_a_claim_that_coarser_steps_cannot_tell_is_not_judged(opened: Open, tmp_
     assert "coarser steps give no value" in found["note"]
 
 
+@pytest.mark.slow
+def test_a_page_says_which_claims_it_does_not_judge(opened: Open, tmp_path: Path) -> None:
+    lifts = {"kind": "below", "signal": "heald_1.lift + heald_2.lift", "bound": "99 mm"}
+    scene = with_claims(
+        "[loom]\nmachine = 'WL680-3600'\nweave = '10/01'\n", [lifts, {"kind": "lowest_margin", "bound": 0.1}]
+    )
+    page = opened(live_page.write(scene, [], tmp_path / "page.html"))
+    until(page, lambda: page.evaluate("Boolean(loomfmu.live.pace)"))
+    first, second = page.evaluate("loomfmu.live.verdicts")
+    assert first["left"] and first["note"] == "a page judges signals, not expressions; loomfmu run judges it"
+    assert second["holds"] and not second.get("left")
+    assert "1 not judged here" in page.inner_text(".outcome")
+
+
 def alike(one: str, other: str) -> bool:
     """Whether two texts are the same but for the last digit of their numbers."""
     number = re.compile(r"(?<![\w.])-?\d+\.?\d*(?:e[+-]\d+)?")

@@ -12,7 +12,8 @@ GUIDES = (
     "docs/glossary.md",
     "docs/scenes.md", "docs/claims.md", "docs/how_sure.md", "docs/report.md", "docs/traces.md",
     "docs/sweeps.md", "docs/limits.md", "docs/tolerances.md", "docs/proving.md", "docs/optimizing.md",
-    "docs/fitting.md", "docs/python.md", "docs/importing.md", "docs/own_mechanism.md",
+    "docs/fitting.md", "docs/python.md", "docs/importing.md", "docs/own_claim.md",
+    "docs/own_mechanism.md",
 )  # fmt: skip
 PROJECT = ("CHANGELOG.md", "SECURITY.md", "THIRD_PARTY.md")
 CONTRIBUTING = (

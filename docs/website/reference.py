@@ -9,8 +9,8 @@ from dataclasses import MISSING, fields
 from unittest import mock
 
 import loomfmu
+from loomfmu import claim, mechanism
 from loomfmu import commands as cli_commands
-from loomfmu import mechanism
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.claims.arguments import Argument, argument_of
 from loomfmu.cosim.claims.claim import AT_LEAST
@@ -34,6 +34,7 @@ def pages() -> dict[str, str]:
         "reference/python.md": python(),
         "reference/design.md": design(),
         "reference/mechanism.md": own_mechanism(),
+        "reference/claim.md": own_claim(),
     }
 
 
@@ -123,6 +124,15 @@ def own_mechanism() -> str:
     described = [each for each in named.values() if inspect.isfunction(each) or inspect.isclass(each)]
     return f"# Python: loomfmu.mechanism\n\n{about}\n\n" + _described(
         f"{each.__module__}.{each.__name__}" for each in described
+    )
+
+
+def own_claim() -> str:
+    """What the file of a claim imports."""
+    about = "[A claim of your own](../docs/own_claim.md) shows how they are used."
+    named = (getattr(claim, name) for name in claim.__all__)
+    return f"# Python: loomfmu.claim\n\n{about}\n\n" + _described(
+        f"{each.__module__}.{each.__name__}" for each in named
     )
 
 

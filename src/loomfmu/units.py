@@ -260,6 +260,17 @@ def show(value: float, name: str) -> str:
     return f"{value / unit(name).factor:.7g}" + ("" if name == "1" else f" {name}")
 
 
+def exact(value: float, name: str) -> str:
+    """An SI value as a number in a unit, with as many digits as it takes to read the same value again.
+
+    >>> [exact(parse(text, "rad/s"), "rev/min") for text in ("640 rev/min", "646.81644207 rev/min")]
+    ['640', '646.81644207']
+    """
+    factor = unit(name).factor
+    texts = (f"{value / factor:.{digits}g}" for digits in range(7, 17))
+    return next((text for text in texts if float(text) * factor == value), f"{value / factor:.17g}")
+
+
 def si(name: str) -> str:
     """The SI unit of the same dimension.
 

@@ -166,6 +166,11 @@ def test_steps_that_do_not_show_a_ripple_leave_a_claim_undecided(steps: int, sho
     assert (why + " or more" in found.note) is not shown
 
 
+def test_a_start_up_that_no_steps_show_leaves_a_claim_undecided() -> None:
+    (found,) = of_loom(90, bound=-1000, shaft__ramp_duration=1e-310)
+    assert "in 1e-310 s; more than any that a scene can have are needed" in found.note
+
+
 @pytest.mark.parametrize(
     ("given", "signal"),
     [
@@ -630,6 +635,15 @@ def test_a_ratio_at_the_samples_is_as_sure_as_its_forces() -> None:
     (found,) = verdicts(text, revolutions=1, steps_per_revolution=1890, shaft__speed="100 rev/min")
     truth = 2.0069194  # from 737,280 and 999,983 steps
     assert found.word == "undecided" and found.error > found.worst - truth > 0.0
+
+
+def test_what_turns_by_itself_moves_between_the_samples() -> None:
+    """None of its inputs changes, but the time does."""
+    cut = {f"roller__shaft_{name}": False for name in ("angle", "velocity", "acceleration")}
+    text = table("roller", component="DetachingRoller", follow_shaft=False) + "[wires]\n" + wires(**cut)
+    text += claim("below", signal="roller.holding_force", bound=200.0)
+    (found,) = verdicts(text, revolutions=1, steps_per_revolution=37)
+    assert found.word == "undecided" and "is known only at the samples" in found.note
 
 
 def test_a_yes_or_no_output_is_no_surer_than_the_number_that_decides_it(tmp_path: Path) -> None:

@@ -21,7 +21,7 @@ class Pump(Component):
     load: float = input_("N", 5.0, "Load", display="cN", maximum=1e3)
     angle: float = input_("rad", 0.0, "Angle", unbounded=True, rate="turning")
     turning: float = input_("rad/s", 0.0, "Turning")
-    flow: float = output("m/s", "Flow", nominal=2.0, depends=("load",))
+    flow: float = output("m/s", "Flow", nominal=2.0, constant=True)
     strokes: int = output("1", "Strokes", start=0)
     primes: bool = output("1", "Whether it takes in liquid", start=False)
     level: float = state("m", "Level", start=1.5)
@@ -75,8 +75,8 @@ def test_declared_roles(name):
         ("speed", "nominal", 50.0),
         ("angle", "unbounded", True),
         ("angle", "rate", "turning"),
-        ("flow", "depends", ("load",)),
-        ("strokes", "depends", None),
+        ("flow", "constant", True),
+        ("strokes", "constant", False),
         ("flow", "start", 0.0),
         ("level", "start", 1.5),
     ],

@@ -70,10 +70,10 @@ def test_a_folded_dataset_has_whole_revolutions(result: loomfmu.Result) -> None:
 def test_a_table_and_a_dataset_have_degrees(result: loomfmu.Result) -> None:
     with pytest.raises(LoomfmuError, match=r"\['belt.margin'\] is not the name of a signal"):
         result.trace.to_pandas(["belt.margin"])
-    table = result.trace.to_pandas("belt.at_risk")
+    table = result.to_pandas("belt.at_risk")
     assert list(table.columns) == ["belt.at_risk", "shaft_angle", "degrees"] and table.index.name == "time"
     np.testing.assert_array_equal(table["degrees"], np.degrees(result.trace.shaft_angle))
-    folded = result.trace.to_xarray("belt.margin", fold=8)
+    folded = result.to_xarray("belt.margin", fold=8)
     np.testing.assert_array_equal(folded["degrees"], np.arange(0, 360, 45))
 
 
@@ -88,6 +88,7 @@ def test_spans_of_angle_where_a_condition_is_met(result: loomfmu.Result) -> None
         edges = [each for each in spans.ravel() if each not in (angle[0], angle[-1])]
         np.testing.assert_allclose(np.interp(edges, angle, lift), 0.04, atol=1e-12)  # rounding
     assert trace.angles_where("heald_1.lift > 40 m").shape == (0, 2)
+    assert len(trace.angles_where("heald_1.lift > 0"))  # which is 0 in any unit
     at_risk = trace["belt.at_risk"]
     (begin, end), *_ = trace.angles_where("belt.at_risk>=1")
     first = int(np.argmax(at_risk))
@@ -112,6 +113,7 @@ def test_a_condition_is_not_met_where_the_signal_is_not_known() -> None:
     [
         ("heald_1.lift", "is not a signal, <, <=, > or >=, and a number with its unit"),
         ("heald_1.lift > 40 rpm", "the condition 'heald_1.lift > 40 rpm': "),
+        ("heald_1.lift > 40", 'the condition .*: 40 has no unit; write "heald_1.lift > 40 mm"$'),
         ("heald_1.lfit > 40 mm", r"did you mean 'heald_1\.lift'"),
     ],
 )

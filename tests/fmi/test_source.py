@@ -197,6 +197,39 @@ def test_a_record_is_a_frozen_dataclass_of_fields_alone(record):
         flatten(Struck)
 
 
+@dataclass(frozen=True)
+class Pair:
+    """A pair of any kind."""
+
+    both: tuple[float, ...]
+
+
+def deeper(x: float) -> float:
+    return deeper(x - 1.0) if x > 0.0 else x
+
+
+halved = lambda x: 0.5 * x  # noqa: E731
+if True:
+
+    def tripled(x: float) -> float:
+        return 3.0 * x
+
+
+@pytest.mark.parametrize(
+    ("sound", "message"),
+    [
+        (lambda self, time: Pair((time,)).both[0], r"Pair\.both is tuple\[float, \.\.\.\], not a number"),
+        (lambda self, time: deeper(time), "deeper calls itself"),
+        (lambda self, time: halved(time), "a def of its own, at the left margin"),
+        (lambda self, time: tripled(time), "a def of its own, at the left margin"),
+    ],
+)
+def test_what_cannot_stand_by_itself_is_refused(sound, message):
+    ringing = type("Ringing", (Component,), {"sounding": sound, "__module__": __name__})
+    with pytest.raises(SourceError, match=message):
+        flatten(ringing)
+
+
 def test_modules_cannot_be_carried():
     @dataclass(slots=True)
     class Modular(Bell):

@@ -227,12 +227,49 @@ REFUSED = {
     "y = [x, x]\n        a, b, c = y\n        x = a": "2 values for 3 names",
     "y = [0, 1]\n        y[self.add()] += 1": "y[self.add()] would be computed twice",
     "def g(y: float) -> float:\n            return y": "FunctionDef is not in the subset",
+    "x = sometimes(x)": "sometimes may end without the return that is declared",
+    "if x > 1.0:\n            y = x\n        x = y": "y may not be set yet: give it a value before",
+    "y += x": "y may not be set yet",
+    "while x < 1.0:\n            y = 2.0\n            x = y\n        x = y": "y may not be set yet",
+    "for n in range(int(x)):\n            y = x\n        x = y": "y may not be set yet",
+    "for n in range(3):\n            if x > n: break\n            y = x\n        x = y": "y may",
+    "for n in range(3):\n            if x > n: continue\n            y = x\n        x = y": "y may",
+    "x = float(n)\n        for n in range(3):\n            x = x + n": "n may not be set yet",
 }
+SET = [  # on all ways
+    "if x > 1.0: y = x\n        else: y = 1.0\n        x = y",
+    "if x > 1.0: y = x\n        elif x > 0.0: return 0\n        else: y = 1.0\n        x = y",
+    "for n in range(3):\n            y = x * n\n        x = y + n",
+    "while True:\n            y = x\n            if y > 1.0: break\n            x = x + 1.0\n        x = y",
+    "y = [x * n for n in range(3)]\n        x = y[1]",
+]
+
+
+@pytest.fixture
+def odd(tmp_path, monkeypatch):
+    """Makes a component with these lines in its step."""
+
+    def made(line):
+        (tmp_path / "odd.py").write_text(ODD.replace("{line}", line))
+        monkeypatch.syspath_prepend(tmp_path)
+        monkeypatch.delitem(__import__("sys").modules, "odd", raising=False)
+        return __import__("odd").Odd
+
+    return made
 
 
 @pytest.mark.parametrize(("line", "reason"), REFUSED.items())
-def test_what_is_not_in_the_subset(tmp_path, monkeypatch, line, reason):
-    text = f'''
+def test_what_is_not_in_the_subset(odd, line, reason):
+    with pytest.raises(TranslationError, match=re.escape(reason)):
+        translate(odd(line))
+
+
+@pytest.mark.parametrize("line", SET)
+def test_names_that_all_ways_set_translate(odd, line):
+    assert "Odd__step" in translate(odd(line)).plain.functions
+
+
+ODD = '''
 from dataclasses import dataclass
 from math import sqrt
 from loomfmu.declaring.arrays import array
@@ -271,6 +308,10 @@ def either(x: float) -> list[float]:
         return [x]
     return [x, x]
 
+def sometimes(x: float) -> float:
+    if x > 0.0:
+        return x
+
 @dataclass(slots=True)
 class Odd(Component):
     """Odd."""
@@ -300,12 +341,6 @@ class Odd(Component):
         self.value = sqrt(x)
         return 0
 '''
-    (tmp_path / "odd.py").write_text(text)
-    monkeypatch.syspath_prepend(tmp_path)
-    monkeypatch.delitem(__import__("sys").modules, "odd", raising=False)
-    odd = __import__("odd").Odd
-    with pytest.raises(TranslationError, match=re.escape(reason)):
-        translate(odd)
 
 
 def test_only_variables_are_shown_in_problems():

@@ -84,7 +84,7 @@ def test_derivatives_are_those_that_differences_of_runs_approach(case):
 
 
 def test_an_extreme_that_is_held_has_a_derivative_though_its_moved_samples_rise_and_fall():
-    found = gradient(SIMS / "wl680_3600.toml", of=["belt.lowest_margin"], by=["belt.yarn_tension"])
+    found = gradient(SIMS / "wl680_3600.toml", of="belt.lowest_margin", by="belt.yarn_tension")
     assert found.si[0, 0] == pytest.approx(0.0, abs=1e-9)  # the head turns there; after that no weft pushes
 
 

@@ -5,7 +5,7 @@ import shlex
 import shutil
 from pathlib import Path
 
-from ..display.printed import say
+from ..display.printed import complain, say
 from ..errors import LoomfmuError
 from .shared import PLATFORM, argument, command, flag, force, platforms
 
@@ -40,6 +40,10 @@ def build(options: argparse.Namespace) -> int:
     built_for = platforms(options)
     if options.native:
         output = options.output or Path("build/native" if options.fmi == 2 else "build/native_fmi3")
+        count = f"{len(built)} native FMU{'s' * (len(built) != 1)}"
+        complain(
+            f"building {count} for {', '.join(built_for)}: at first, the compiler takes a minute for each"
+        )
         write = partial(
             build_native, directory=output, platforms=built_for, fmi=options.fmi, overwrite=options.force
         )

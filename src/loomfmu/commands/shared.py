@@ -103,10 +103,10 @@ def vary(about: str, required: bool = False) -> Argument:
     return argument("--vary", metavar, about, action="append", default=[], required=required)
 
 
-def place(name: str) -> tuple[Argument, ...]:
-    """The arguments that say where many runs go and which processes make them."""
+def place(name: str, file: str = "") -> tuple[Argument, ...]:
+    """The arguments that say where many runs go, perhaps into a file too, and which processes make them."""
     return (
-        argument("--output", "DIR", f"folder for the results; results/{name} by default"),
+        argument("--output", "DIR", f"folder for the results; results/{name} by default{file}"),
         argument("--processes", "N", "worker processes on this machine; one per core by default", type=int),
         argument("--scheduler", "ADDRESS", "run on a dask cluster, such as tcp://host:8786"),
         flag("--restart", "discard earlier results in DIR and run everything again"),
@@ -154,13 +154,20 @@ def revolutions(count: str) -> str:
 
 
 def proofs_of(scene: Any, over: Sequence[str], given: dict[str, Any] | None = None) -> "Proofs | None":
-    """Return the proofs of a scene over ranges, or None where none is given; warn of the ranges."""
+    """Return the proofs of a scene over ranges, or None where none is given; warn of the ranges.
+
+    Raises LoomfmuError if the scene's own values are not within the ranges: its verdicts are not proven then.
+    """
     if not over:
         return None
     from ..studies.proving.prove import prove
 
     found = prove(scene, over=over, set=given)
     warn(doubt for span in found.over for doubt in span.doubts)
+    for span in found.over:
+        if not span.low <= span.value <= span.high:
+            own = f"{span.show(span.value)}, the scene's value"
+            raise LoomfmuError(f"--prove {span.key}: {own}, is outside the range from {span.text}")
     return found
 
 

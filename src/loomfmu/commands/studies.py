@@ -12,12 +12,16 @@ from ..files import check_target
 from .shared import SCENE, SET, argument, command, ending, flag, force, pairs, place, vary
 
 
-@command(argument("sweep", "SWEEP.toml", type=ending(".toml")), *place("SWEEP"))
+@command(
+    argument("sweep", "SWEEP.toml", type=ending(".toml")),
+    *place("SWEEP", "; FILE.csv also writes the table there"),
+    force("a file at FILE.csv that is not the table of a sweep"),
+)
 def sweep(options: argparse.Namespace) -> int:
     """Run a scene with many combinations of values."""
     from ..sweeps.run import sweep as run_sweep
 
-    found = run_sweep(options.sweep, progress=True, **_places(options))
+    found = run_sweep(options.sweep, progress=True, overwrite=options.force, **_places(options))
     from ..sweeps.summary import show  # after the extra `sweep` is known to be installed
 
     warn(found.warnings)
@@ -159,7 +163,7 @@ def prove(options: argparse.Namespace) -> int:
         given = ("over", "claim", "certificate", "picture", "overrides", "boxes")
         if any(getattr(options, name) for name in given):
             raise LoomfmuError("--check takes a certificate alone: the ranges and the claims are in it")
-        say(*check(options.check))
+        say(*check(options.check, progress=True))
         return 0
     from ..report import pictures
     from ..studies.proving import certificate

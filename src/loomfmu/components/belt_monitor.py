@@ -103,22 +103,17 @@ class BeltMonitor(ShaftDriven):
         LENGTH,
         "Length of the belt between guide and head; negative while inside the guide",
         nominal=1.0,
-        depends=("travel", "velocity", "acceleration"),
     )
-    inertia_force: float = output(
-        "N", "Inertia force of the head on the belt", nominal=100.0, depends=("acceleration",)
-    )
+    inertia_force: float = output("N", "Inertia force of the head on the belt", nominal=100.0)
     axial_force: float = output(
         "N",
         "Compression of the belt: inertia force and weft tension",
         nominal=100.0,
-        depends=("velocity", "acceleration", "yarn_tension"),
     )
     critical_force: float = output(
         "N",
         "Critical load of the free section; inside the guide, that of a section of 1 mm",
         nominal=100.0,
-        depends=("travel", "velocity", "acceleration", "guide_clearance"),
     )
     length_factor: float = output("1", "Column length factor in use", follows="guide_clearance")
     margin: float = output("1", "Margin against buckling, 1 - compression / critical load")

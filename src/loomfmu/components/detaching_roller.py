@@ -18,10 +18,6 @@ from ..physics.detaching_roller import (
 from ..physics.shaft import too_far
 from .quantities import FORCE, INERTIA, RADIUS, RATIO, SHARE, TURNING
 from .shaft_driven import TOO_FAR, ShaftDriven
-from .shared_declarations import OF_SHAFT
-
-_OF_MOTION = (*OF_SHAFT, "acceleration")
-_OF_VELOCITY = (*OF_SHAFT, "roller_ratio")
 
 
 @dataclass(slots=True)
@@ -85,34 +81,29 @@ class DetachingRoller(ShaftDriven):
         45.0,
         "Drafting force with the most fibres, used if prescribe_drafting_force is true (assumed)",
     )
-    division: float = output("1", "Division of the nip, 0 to 40", nominal=10.0, depends=OF_SHAFT)
-    roller_acceleration: float = output(
-        "rad/s2", "Acceleration of the rollers in use", nominal=10000.0, depends=_OF_MOTION
-    )
+    division: float = output("1", "Division of the nip, 0 to 40", nominal=10.0)
+    roller_acceleration: float = output("rad/s2", "Acceleration of the rollers in use", nominal=10000.0)
     drafted_share: float = output("1", "Share of fibres in use; 0 outside divisions 18 to 30")
     drafting_force: float = output("N", "Force that drafts the fibres of a unit", nominal=10.0)
     holding_force: float = output(
         "N",
         "Force that the nip can hold: friction less what moves the top roller",
         nominal=100.0,
-        depends=_OF_MOTION,
     )
     drafting_torque: float = output("N.m", "Torque of the drafting force on the back roller, M11")
-    top_roller_torque: float = output("N.m", "Torque of a top roller on its roller, M12", depends=_OF_MOTION)
-    inertia_torque: float = output("N.m", "Torque of a roller's own inertia, M13", depends=_OF_MOTION)
+    top_roller_torque: float = output("N.m", "Torque of a top roller on its roller, M12")
+    inertia_torque: float = output("N.m", "Torque of a roller's own inertia, M13")
     back_torque: float = output("N.m", "Driving torque of the back roller of a unit, M1")
-    front_torque: float = output(
-        "N.m", "Driving torque of the front roller of a unit, M2", depends=_OF_MOTION
-    )
+    front_torque: float = output("N.m", "Driving torque of the front roller of a unit, M2")
     unit_torque: float = output("N.m", "Driving torque of both rollers of a unit, M")
     machine_torque: float = output("N.m", "Driving torque of all units, M0", nominal=10.0)
-    roller_velocity: float = output(TURNING, "Velocity of the rollers in use", depends=_OF_VELOCITY)
+    roller_velocity: float = output(TURNING, "Velocity of the rollers in use")
     shaft_torque: float = output(
         "N.m",
         "Torque of all units on the shaft, braking: machine_torque by the rollers' relative velocity",
         nominal=10.0,
     )
-    kinetic_energy: float = output("J", "Kinetic energy of the rollers of all units", depends=_OF_VELOCITY)
+    kinetic_energy: float = output("J", "Kinetic energy of the rollers of all units")
     dissipated_power: float = output("W", "Power of the drafting forces of all units", nominal=100.0)
     nip_event: float = indicator("1", "Passes zero where the next nip begins")
     drafting_event: float = indicator("1", "Positive while fibres are drafted")

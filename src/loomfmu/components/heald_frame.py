@@ -25,7 +25,6 @@ from .quantities import (
 from .shaft_driven import turned_too_far
 from .terminals import FRAME, OF_ROTOR, ROTOR
 
-_OF_TORQUES = (*OF_ROTOR, "rotor_ratio", "lift_slope", "load")
 _SLOWEST = 1e-9  # rotor_ratio below which the rotor stands: a cam then has no torque about it
 
 
@@ -146,55 +145,42 @@ class HealdFrame(Component):
         source="damper_#.frame_work|warp_#.frame_work",
         source_for="load",
     )
-    lift: float = output(
-        LENGTH, "Lift of the frame above its lowered position", nominal=0.1, rate="velocity", depends=OF_ROTOR
-    )
-    velocity: float = output("m/s", "Velocity of the frame", rate="acceleration", depends=OF_ROTOR)
-    acceleration: float = output("m/s2", "Acceleration of the frame", nominal=10.0, depends=OF_ROTOR)
+    lift: float = output(LENGTH, "Lift of the frame above its lowered position", nominal=0.1, rate="velocity")
+    velocity: float = output("m/s", "Velocity of the frame", rate="acceleration")
+    acceleration: float = output("m/s2", "Acceleration of the frame", nominal=10.0)
     warp_height: float = output(
-        LENGTH, "Height of the warp above the closed shed, at the rapier", nominal=0.01, depends=OF_ROTOR
+        LENGTH, "Height of the warp above the closed shed, at the rapier", nominal=0.01
     )
-    inertia_force: float = output(
-        "N", "Inertia force of the frame without its sprung mass", nominal=100.0, depends=OF_ROTOR
-    )
-    moving: bool = output(
-        "1", "The frame changes position between the current slow points", start=False, depends=OF_ROTOR
-    )
+    inertia_force: float = output("N", "Inertia force of the frame without its sprung mass", nominal=100.0)
+    moving: bool = output("1", "The frame changes position between the current slow points", start=False)
     drive_force: float = output(
         "N",
         "Force of the drive on the frame, upwards: inertia and weight, less load if that is wired",
         nominal=100.0,
-        depends=(*OF_ROTOR, "load"),
     )
     rotor_torque: float = output(
         "N.m",
         "Torque of the frame on the rotor, braking; of a rigid frame if load is not wired",
         nominal=10.0,
-        depends=_OF_TORQUES,
     )
     shaft_torque: float = output(
         "N.m",
         "Torque of the frame on the main shaft, braking; of a rigid frame if load is not wired",
         nominal=10.0,
-        depends=_OF_TORQUES,
     )
-    kinetic_energy: float = output(
-        "J", "Kinetic energy of the frame without its sprung mass", nominal=10.0, depends=OF_ROTOR
-    )
+    kinetic_energy: float = output("J", "Kinetic energy of the frame without its sprung mass", nominal=10.0)
     potential_energy: float = output(
-        "J", "Energy of the frame's weight, from its lowered position", nominal=10.0, depends=OF_ROTOR
+        "J", "Energy of the frame's weight, from its lowered position", nominal=10.0
     )
     passed_torque: float = output(
         "N.m",
         "Part of shaft_torque whose work is not in shaft_work: what goes to load without load_work",
         nominal=10.0,
-        depends=_OF_TORQUES,
     )
     shaft_work: float = output(
         "J",
         "Work taken from the shaft: kinetic and potential energy, and load_work if it is used",
         nominal=10.0,
-        depends=(*OF_ROTOR, "load_work"),
     )
     slow_point_event: float = indicator("1", "Passes zero where the frame may begin or end a change")
 

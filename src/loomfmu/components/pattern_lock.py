@@ -35,7 +35,7 @@ from .quantities import (
     TURNING,
 )
 from .shaft_driven import TOO_FAR, ShaftDriven
-from .shared_declarations import OF_SHAFT, found_once
+from .shared_declarations import found_once
 
 
 @dataclass(slots=True)
@@ -93,13 +93,11 @@ class PatternLock(ShaftDriven):
         DURATION,
         "Time available in the dwell at the current speed; 1e6 s for a shaft at rest",
         nominal=0.01,
-        depends=OF_SHAFT[1:],
     )
     in_time: bool = output(
         "1",
         "At this speed the pawl changes over in time and its spring is strong enough",
         start=False,
-        depends=OF_SHAFT[1:],
     )
     torque_speed_limit: float = found_once(
         TURNING, "Shaft speed up to which the spring is strong enough", nominal=100.0
@@ -112,7 +110,6 @@ class PatternLock(ShaftDriven):
         "W",
         "Power lost by all pawls on the discs, at the rotor's highest speed",
         nominal=100.0,
-        depends=OF_SHAFT[1:],
     )
     inertia: float = auxiliary("kg.m2", "Moment of inertia of the pawl", minimum=0.0)
     whole_turn: float = auxiliary("rad", "Angle that the pawl turns from one disc to the other")

@@ -6,12 +6,11 @@ from ..declaring.declarations import Unit, input_, output, parameter
 from .quantities import ACCELERATION, ANGLE, LENGTH, TENSION, TRAVEL, TURNING, VELOCITY
 
 HEAD = "the rapier head"
-OF_SHAFT = ("shaft_angle", "shaft_velocity", "shaft_acceleration")
 
 
 def found_once(unit: Unit, description: str, nominal: float | None = None) -> Any:
     """The output for what follows from the parameters alone."""
-    return output(unit, description, variability="discrete", nominal=nominal, depends=())
+    return output(unit, description, variability="discrete", nominal=nominal, constant=True)
 
 
 def shaft_speed(description: str, unless: str | None = None) -> Any:

@@ -21,7 +21,7 @@ from .quantities import (
     WHEEL_DIAMETER,
 )
 from .shaft_driven import TOO_FAR, ShaftDriven
-from .shared_declarations import OF_SHAFT, found_once
+from .shared_declarations import found_once
 from .terminals import HEAD
 
 FARTHEST_PHASE = pi / 3.0 + 1e-9  # of the crank from a dead centre that it is sure to belong to
@@ -101,9 +101,7 @@ class WeftInsertion(ShaftDriven):
     belt_length: float = parameter(
         TRAVEL.within(0.0, 20.0), 3.0, "Length of the belt behind the head, all of which moves (assumed)"
     )
-    travel: float = output(
-        "m", "Travel of the rapier head from its outer dead centre", rate="velocity", depends=OF_SHAFT
-    )
+    travel: float = output("m", "Travel of the rapier head from its outer dead centre", rate="velocity")
     velocity: float = output("m/s", "Velocity of the rapier head", nominal=10.0, rate="acceleration")
     acceleration: float = output("m/s2", "Acceleration of the rapier head", nominal=1000.0)
     stroke: float = found_once("m", "Travel at the inner dead centre, half a turn on")

@@ -21,7 +21,7 @@ from .master.grid import SAME, contradicted, passed_by, period
 from .planning.requested import Movements, Requested
 from .scenes.graph import Wire, step_order
 from .scenes.scene import Scene
-from .scenes.settings import ITERATED
+from .scenes.settings import ITERATED, MOST_STEPS
 
 # of the longest step that shows how a mechanism moves: a shaft's ripple takes 16 steps; of 8, three are left
 # to the coarsest run
@@ -249,4 +249,7 @@ def _enough(scene: Scene, longest: float) -> str:
     """Steps that would be short enough."""
     if scene.step is not None:
         return f"set step = {longest:.2g} s or less"
-    return f"set steps_per_revolution = {math.ceil(period(scene) / longest - SAME)} or more"
+    steps = period(scene) / longest - SAME
+    if steps > MOST_STEPS:
+        return "more than any that a scene can have are needed"
+    return f"set steps_per_revolution = {math.ceil(steps)} or more"

@@ -7,6 +7,7 @@ velocity, would lie at the same share of a step in all of them, and equal errors
 """
 
 import math
+import re
 from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -246,10 +247,16 @@ def _settled(verdict: Verdict, coarsest: float, longer: float, length: str) -> V
 
 def _scale(scene: Scene, verdict: Verdict) -> float:
     """The largest of a verdict's numbers and what is usual for its signal: a bound may be near 0."""
-    name, _, variable = verdict.signal.partition(".")
-    port = scene.instances[name].fmu.ports.get(variable) if name in scene.instances else None
-    usual = (port.nominal or float(verdict.unit == "1")) if port else 0.0
-    return max(abs(verdict.bound), abs(verdict.worst), usual)
+    named = (each.partition(".") for each in re.findall(r"\w+\.\w+", verdict.signal))
+    ports = (
+        scene.instances[name].fmu.ports.get(variable)
+        for name, _, variable in named
+        if name in scene.instances
+    )
+    usual = (
+        port.nominal or float(verdict.unit == "1") for port in ports if port and port.unit == verdict.unit
+    )
+    return max(abs(verdict.bound), abs(verdict.worst), *usual)
 
 
 def _noted(verdict: Verdict, note: str) -> Verdict:

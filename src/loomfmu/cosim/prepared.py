@@ -89,7 +89,7 @@ class Pattern:
         """
         scene = self.values.set(values, overrides)
         if scene is not None:
-            check_bounds(scene, self.claims)
+            check_bounds(self._requested, scene, self.claims)
         return scene
 
     def grid(self, scene: Scene, signals: Sequence[str]) -> Grid:

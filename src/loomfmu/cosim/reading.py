@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import LoomfmuError, listed, path_of, shown, suggestion
+from .claims.bounded import Bounded, check_speed
 from .claims.claim import Claim
-from .claims.claims import Bounded, angles_in, check_speed, doubts, place_of
+from .claims.claims import angles_in, doubts, place_of
 from .importing.built import check_flavour
 from .importing.process import AVAILABLE
 from .planning.requested import Requested, output_port, parameter_of
@@ -117,7 +118,7 @@ def checked_claims(scene: Scene) -> Requested:
     known = {name: each.fmu.facts for name, each in scene.instances.items() if each.fmu.facts}
     for table, claim in zip(scene.claims, requested.claims, strict=True):
         where = place_of(table)
-        for angle in angles_in(table) if "shaft" not in scene.instances else ():
+        for angle in angles_in(claim, table) if "shaft" not in scene.instances else ():
             raise LoomfmuError(f"{where}: {angle} is a shaft angle, but the scene has no shaft")
         for signal in claim.signals(requested):
             port = output_port(scene, signal, where)
@@ -126,20 +127,21 @@ def checked_claims(scene: Scene) -> Requested:
                 f' set "{sink}" = "{source}" in [wires] and coupling = "iterated"'
                 for sink, source in left_out(known, wired, signal).items()
             ]
-            if isinstance(claim, Bounded) and not isinstance(claim.bound, str):
+            alike = isinstance(claim, Bounded) and port.unit == claim.unit_in(requested)
+            if isinstance(claim, Bounded) and alike and not isinstance(claim.bound, str):
                 notes.append(port.doubt(table["bound"], f"{where} of {signal}: bound"))
-        check_bounds(scene, [claim])
-        notes += doubts(table)
+        check_bounds(requested, scene, [claim])
+        notes += doubts(claim, table)
     requested.scene = replace(scene, notes=tuple(dict.fromkeys(note for note in notes if note)))
     return requested
 
 
-def check_bounds(scene: Scene, claims: Iterable[Claim]) -> None:
+def check_bounds(requested: Requested, scene: Scene, claims: Iterable[Claim]) -> None:
     """Refuse parameters that cannot bound the signal of a claim, or that rule it out."""
     for claim in claims:
         claim.check_parameters(partial(parameter_of, scene))
         if isinstance(claim, Bounded) and isinstance(claim.bound, str):
-            _check_parameter(scene, claim.bound, claim.signal)
+            _check_parameter(scene, claim.bound, claim.signal, claim.unit_in(requested))
 
 
 def _unrecorded(scene: Scene) -> Iterator[str]:
@@ -151,7 +153,7 @@ def _unrecorded(scene: Scene) -> Iterator[str]:
             yield f"{name}: nothing recorded; none of its outputs is a scalar number or a Boolean: {listed}"
 
 
-def _check_parameter(scene: Scene, name: str, signal: str) -> None:
+def _check_parameter(scene: Scene, name: str, signal: str, wanted: str) -> None:
     """A parameter that bounds a signal is one of the scene, in the signal's unit."""
     instance, _, variable = name.partition(".")
     ports = scene.instances[instance].fmu.ports if instance in scene.instances else {}
@@ -163,7 +165,7 @@ def _check_parameter(scene: Scene, name: str, signal: str) -> None:
         raise LoomfmuError(
             f"claim: bound = {name!r} has no effect in this scene, as {instance} does not use it"
         )
-    wanted, given = output_port(scene, signal, "claim").unit, ports[variable].unit
+    given = ports[variable].unit
     if given != wanted:
         raise LoomfmuError(f"claim: bound {name} is in {given}, but {signal} is in {wanted}")
     check_speed(name, float(value), wanted)

@@ -2,10 +2,11 @@
 
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from ..display import notebook
 from ..errors import LoomfmuError
-from ..traces import Early, Recording, Trace, Verdict
+from ..traces import Early, Recording, Signals, Trace, Verdict
 from ..traces.verdict import HEADINGS, outcome
 from .scenes.headings import heading
 from .scenes.scene import Scene
@@ -67,8 +68,22 @@ class Judged:
         )
 
 
+class Traced:
+    """A run with its trace."""
+
+    trace: Signals
+
+    def to_xarray(self, *signals: str, fold: bool | int = False) -> Any:
+        """The signals of the trace, or these alone, as `Trace.to_xarray`."""
+        return self.trace.to_xarray(*signals, fold=fold)
+
+    def to_pandas(self, *signals: str) -> Any:
+        """The signals of the trace, or these alone, as `Trace.to_pandas`."""
+        return self.trace.to_pandas(*signals)
+
+
 @dataclass(frozen=True, repr=False)
-class Result(Judged):
+class Result(Judged, Traced):
     """A finished run with its trace on disk: `trace["belt.margin"]` are the signal's values in SI.
 
     `path` is where the trace was written. `trace` stays that of this run even if another is written there.
@@ -93,7 +108,7 @@ class Result(Judged):
 
 
 @dataclass(frozen=True, repr=False)
-class Evaluation(Judged):
+class Evaluation(Judged, Traced):
     """A finished run with its trace in memory: `trace["belt.margin"]` are the signal's values in SI.
 
     `measured` has what was to be measured: its number as the worst value, and its error. `near` are the

@@ -104,7 +104,7 @@ def output(
     nominal: float | None = None,
     unbounded: bool = False,
     rate: str | None = None,
-    depends: tuple[str, ...] | None = None,
+    constant: bool = False,
     follows: str | None = None,
     lowest_of: str | None = None,
     highest_of: str | None = None,
@@ -115,7 +115,6 @@ def output(
 ) -> Any:
     """A value that the component computes; integers and booleans are discrete by default."""
     variability = variability or _usual(start)
-    depends = (follows,) if follows else depends
     return _declared(causality="output", **locals())
 
 

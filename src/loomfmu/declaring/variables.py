@@ -3,7 +3,7 @@
 import math
 import re
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import MISSING, Field, dataclass, fields, replace
 from itertools import groupby
 from typing import Any, ClassVar, NamedTuple
@@ -36,8 +36,8 @@ class Variable:
     unbounded: bool = False
     rate: str | None = None
     """The variable that is its time derivative."""
-    depends: tuple[str, ...] | None = None
-    """Inputs that an output depends on: None for all, () for none, TIME for time alone."""
+    constant: bool = False
+    """It follows from the parameters alone."""
     follows: str | None = None
     """The one input with which an output only rises or only falls."""
     choices: tuple[str, ...] = ()
@@ -87,7 +87,7 @@ class Variable:
     def one_way(self) -> bool:
         """True if it goes one way alone between two samples, so that these are its extremes."""
         held = self.so_far or self.lowest_of or self.highest_of
-        return bool(held) or self.depends == () or self.variability == "fixed"
+        return bool(held) or self.constant or self.variability == "fixed"
 
     @property
     def structured(self) -> str:
@@ -232,6 +232,8 @@ class Component:
     longest_turn: ClassVar[float] = 0.0
     # of a shaft: the parameters that are 0 while it turns evenly; none of one that never does
     unsteady: ClassVar[tuple[str, ...]] = ()
+    # on what each output depends, where there is no source that shows it
+    needs: ClassVar[Mapping[str, frozenset[str]]] = {}
     # end and communication step that a host starts from [s]
     experiment: ClassVar[tuple[float, float]] = (1.0, 1e-4)
 

@@ -1,19 +1,22 @@
 """The identity of each build of our own FMUs, computed once for a state of their sources.
 
-Flattening and describing all components takes a third of a second; reading the files that it depends on takes
+Flattening and describing all components takes two seconds; reading the files that it depends on takes
 a few milliseconds. So what was computed is kept under a digest of these files: in the package, if it brings
 its FMUs, or in the cache.
 """
 
 import hashlib
 import json
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 from .. import components
 from ..cache.entries import IDENTITIES, made_file
 from ..declaring.variables import Component
 from ..files import replace_file
+from .dataflow.dependencies import dependencies
 from .native.platforms import SHIPPED, stamp
 
 PACKAGE = Path(__file__).parents[1]
@@ -48,7 +51,15 @@ def identity(component: type[Component]) -> Identity:
 
     Raises LoomfmuError for one that cannot be carried into an FMU.
     """
-    return _all()[component.__name__] if is_own(component) else _computed(component)
+    return _all()["fmus"][component.__name__] if is_own(component) else _computed(component)
+
+
+def needs(component: type[Component]) -> Mapping[str, frozenset[str]]:
+    """On what each output of a component depends over several steps, as `dependencies` says."""
+    if not is_own(component):
+        return dependencies(component, many_steps=True)
+    kept = _all()["needs"][component.__name__]
+    return {output: frozenset(names.split()) for output, names in kept.items()}
 
 
 def shipped(component: type[Component], fmi: int = 2) -> Path | None:
@@ -88,27 +99,32 @@ def _files(part: Path) -> list[Path]:
 
 
 @cache
-def _all() -> dict[str, Identity]:
+def _all() -> dict[str, Any]:
     found = _shipped()
     if found is None:
         key = hashlib.sha256("\n".join([sources(), *map(stamp, TOOLS)]).encode()).hexdigest()
-        found = json.loads(made_file(IDENTITIES, key, "identities.json", _everything).read_bytes())["fmus"]
+        found = json.loads(made_file(IDENTITIES, key, "identities.json", _everything).read_bytes())
     return found
 
 
 @cache
-def _shipped() -> dict[str, Identity] | None:
+def _shipped() -> dict[str, Any] | None:
     """The identities in the package, unless its sources have been changed since."""
     try:
         kept = json.loads((SHIPPED / "identities.json").read_bytes())
-        return kept["fmus"] if kept["sources"] == sources() else None
+        return kept if kept["sources"] == sources() else None
     except (FileNotFoundError, KeyError, TypeError, ValueError):  # or a damaged one: FMUs are built anew
         return None
 
 
 def _everything() -> bytes:
-    fmus = {name: _computed(component) for name, component in components.COMPONENTS.items()}
-    return json.dumps({"sources": sources(), "fmus": fmus}, indent=1).encode()
+    known = components.COMPONENTS.items()
+    fmus = {name: _computed(component) for name, component in known}
+    found = {name: dependencies(component, many_steps=True) for name, component in known}
+    needed = {
+        name: {output: " ".join(sorted(each)) for output, each in of.items()} for name, of in found.items()
+    }
+    return json.dumps({"sources": sources(), "fmus": fmus, "needs": needed}, indent=1).encode()
 
 
 def _computed(component: type[Component]) -> Identity:

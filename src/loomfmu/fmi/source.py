@@ -4,6 +4,7 @@ The component's methods, the physics functions they call and the constants and r
 one after the other, with an `__init__` that lists the declared fields. The module imports `math` alone.
 """
 
+import ast
 import dis
 import hashlib
 import inspect
@@ -12,12 +13,14 @@ import textwrap
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, is_dataclass
 from pathlib import Path
+from threading import RLock
 from types import CodeType, FunctionType
 from typing import Any, get_args
 
 from ..declaring.variables import Component, Variable, arrays_of, variables_of
 from ..errors import LoomfmuError
 
+FIELDS = (float, int, bool, list[float], list[int], list[bool])  # of a record
 HEADER = '"""{name}, written by loomfmu from its component and the physics it uses; do not edit."""\n'
 
 
@@ -25,6 +28,7 @@ class SourceError(LoomfmuError):
     """A component that uses what cannot be carried into a self-contained module."""
 
 
+one_at_a_time = RLock()  # Python 3.11 may fail with a SystemError where two threads parse
 _flattened: dict[type[Component], str] = {}
 
 
@@ -38,6 +42,13 @@ def flatten(component: type[Component]) -> str:
     return _flattened[component]
 
 
+def of_self(node: ast.AST) -> str:
+    """The name of an attribute of `self`, or nothing."""
+    if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "self":
+        return node.attr
+    return ""
+
+
 def digest(component: type[Component]) -> str:
     """Return the SHA-256 of the module, hence of the component's equations. Raises as `flatten`."""
     return hashlib.sha256(flatten(component).encode()).hexdigest()
@@ -48,6 +59,7 @@ class _Used:
     """All that methods use, directly or through others, by name; what is used first comes first."""
 
     functions: dict[str, FunctionType] = field(default_factory=dict)
+    entered: list[FunctionType] = field(default_factory=list)  # functions of which this is still being found
     records: dict[str, type] = field(default_factory=dict)
     constants: dict[str, Any] = field(default_factory=dict)
     from_math: set[str] = field(default_factory=set)
@@ -95,8 +107,10 @@ def _collect(function: FunctionType, used: _Used) -> None:
             used.from_math.add(name)
         elif isinstance(value, FunctionType):
             if name not in used.functions:
+                _check_function(value, used)
+                used.entered.append(value)
                 _collect(value, used)
-                used.functions[name] = value
+                used.functions[name] = used.entered.pop()
             elif used.functions[name] is not value:
                 raise SourceError(f"{_place(function)}: two functions are called {name}")
         elif isinstance(value, int | float) or _is_table(value):
@@ -108,6 +122,14 @@ def _collect(function: FunctionType, used: _Used) -> None:
                 f"{_place(function)}: {function.__name__} uses {name}, which is neither a function of the"
                 " physics, a number, several as a tuple, a frozen dataclass nor of math"
             )
+
+
+def _check_function(function: FunctionType, used: _Used) -> None:
+    """Refuse a function that cannot stand by itself."""
+    if function in used.entered:
+        raise SourceError(f"{_place(function)}: {function.__name__} calls itself")
+    if function.__name__ == "<lambda>" or inspect.getsource(function)[0].isspace():
+        raise SourceError(f"{_place(function)}: write this function as a def of its own, at the left margin")
 
 
 def _names(code: CodeType) -> list[str]:
@@ -145,6 +167,12 @@ def _add_record(record: type, used: _Used, function: FunctionType) -> None:
         raise SourceError(
             f"{_place(function)}: {name} is not a frozen dataclass with fields alone, no defaults, no methods"
         )
+    for each, kind in kinds.items():
+        if kind not in FIELDS and not is_dataclass(kind):
+            about = inspect.formatannotation(kind)
+            raise SourceError(
+                f"{_place(function)}: {name}.{each} is {about}, not a number, a list or a record"
+            )
     for field_record in _annotated(kinds.values()):
         _add_record(field_record, used, function)
     used.records[name] = record

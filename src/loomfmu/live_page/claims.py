@@ -63,13 +63,17 @@ def _claim(claim: Claim, method: Method, verdict: Verdict, trace: Trace, table: 
     run says of it: the rest it takes from the signals. It leaves out a claim that it would judge otherwise.
     """
     question, read = claim.question(trace), Table()
+    forms = [_form(form, verdict, trace) for form in question.forms]
+    if claim.not_live:
+        native = {"holds": verdict.holds, "decided": verdict.decided, "worst": verdict.worst}
+        return {"not_live": claim.not_live, "forms": forms, "parts": [], "noise": 0.0, "native": native}
     for name in (SHAFT_ANGLE, *question.signals, *(form.signal for form in question.forms)):
         number_of(read, trace, name)
     parameters = [each for each in question.numbers if isinstance(each, str)]
     remark = verdict.note.removeprefix(claim.judge(trace).note).removeprefix("; ")
     return {
         "question": question.written(trace, lambda signal: number_of(table, trace, signal)),
-        "forms": [_form(form, verdict, trace) for form in question.forms],
+        "forms": forms,
         "parts": sorted({name.partition(".")[0] for name in (*read, *parameters)}),
         "words": question.words,
         "noise": claim.noise,

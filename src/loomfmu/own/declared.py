@@ -111,7 +111,6 @@ def _of_references(component: type[Component]) -> Iterator[Fault]:
             ("error", variable.error, "output"),
             ("when", variable.when, "parameter"),
             ("unless", variable.unless, "parameter"),
-            *(("depends", name, "input") for name in variable.depends or ()),
         ):
             if name is not None and (name not in known or known[name].causality != causality):
                 fitting = [other for other, each in known.items() if each.causality == causality]

@@ -1,11 +1,11 @@
-"""A component from a Python file outside the package, checked before anything else is done with it."""
+"""A class from a Python file outside the package, checked before anything else is done with it."""
 
 import ast
 import inspect
 import re
 import sys
 import traceback
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from hashlib import sha256
 from importlib.abc import Loader, MetaPathFinder
@@ -13,6 +13,7 @@ from importlib.machinery import ModuleSpec
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import ModuleType
+from typing import Any, NamedTuple
 
 from ..components import COMPONENTS
 from ..declaring.variables import Component
@@ -23,12 +24,27 @@ from . import declared
 SPEC = re.compile(r"(?P<file>.+\.py)(?::(?P<name>[^:/\\]*))?")
 Texts = dict[Path, str]
 
+
+class Wanted(NamedTuple):
+    """The kind of class that a file is to have: its base, its name in messages, what to do without one.
+
+    `is_whole` tells those that are meant from those that they are built on, and `check` refuses a class that
+    cannot be used, given the file as messages show it and its text.
+    """
+
+    base: type
+    noun: str
+    remedy: str
+    is_whole: Callable[[Any], bool]
+    check: Callable[[Any, Path, str], None]
+
+
 # what a process has loaded: loaded again only if one of the texts has changed
-_loaded: dict[tuple[Path, str], tuple[type[Component], Texts]] = {}
+_loaded: dict[tuple[Path, str, str], tuple[Any, Texts]] = {}
 
 
 def is_file(spec: object) -> bool:
-    """Return whether a component is named by its file, such as `cam.py` or `cam.py:PickingCam`."""
+    """Return whether a class is named by its file, such as `cam.py` or `cam.py:PickingCam`."""
     return isinstance(spec, str) and SPEC.fullmatch(spec) is not None
 
 
@@ -37,30 +53,31 @@ def component(spec: str, directory: Path = Path()) -> type[Component]:
 
     Raises LoomfmuError, naming file and line, for one that cannot be an FMU.
     """
-    return with_texts(spec, directory)[0]
+    found: type[Component] = with_texts(spec, directory, COMPONENT)[0]
+    return found
 
 
-def texts(spec: str, directory: Path = Path()) -> dict[str, str]:
-    """The texts of a component's file and of the neighbours that it imports, by names from the directory."""
+def texts(spec: str, directory: Path, wanted: Wanted) -> dict[str, str]:
+    """The texts of a class's file and of the neighbours that it imports, by names from the directory."""
     base = (directory / split(spec)[0]).parent
     named = Path(split(spec)[0]).parent
     return {
         (named / path.relative_to(base.resolve())).as_posix(): text
-        for path, text in with_texts(spec, directory)[1].items()
+        for path, text in with_texts(spec, directory, wanted)[1].items()
     }
 
 
-def with_texts(spec: str, directory: Path) -> tuple[type[Component], Texts]:
-    """The component, and the texts of the files that it was made of."""
+def with_texts(spec: str, directory: Path, wanted: Wanted) -> tuple[Any, Texts]:
+    """The class, and the texts of the files that it was made of."""
     file, name = split(spec)
     path = (directory / file).resolve()
     shown = directory / file
-    known = _loaded.get((path, name))
+    known = _loaded.get((path, name, wanted.noun))
     if known is None or any(not each.is_file() or text_of(each) != text for each, text in known[1].items()):
         found, read = _executed(path, shown)
-        chosen = _chosen(found, name, shown)
-        _check(chosen, shown, read[path])
-        _loaded[path, name] = known = chosen, read
+        chosen = _chosen(found, name, shown, wanted)
+        wanted.check(chosen, shown, read[path])
+        _loaded[path, name, wanted.noun] = known = chosen, read
     return known
 
 
@@ -68,7 +85,7 @@ def split(spec: str) -> tuple[str, str]:
     """Return the file and the class that a specification names, the class empty if it names none."""
     match = SPEC.fullmatch(spec)
     if match is None:
-        raise LoomfmuError(f"{spec!r} is not a component's file such as cam.py or cam.py:PickingCam")
+        raise LoomfmuError(f"{spec!r} is not a Python file such as cam.py or cam.py:PickingCam")
     return match["file"], match["name"] or ""
 
 
@@ -119,7 +136,7 @@ def _executed(path: Path, shown: Path) -> tuple[ModuleType, Texts]:
                 f"{_shown(Path(str(error.filename)), shown)}, line {error.lineno}: {error.msg}"
             ) from None
         except BaseException as error:  # whatever the file does when it is run
-            raise LoomfmuError(f"{_place(error, shown)}: {described(error)}") from None
+            raise failed(error, shown) from None
     return module, finder.texts
 
 
@@ -139,8 +156,12 @@ def _importing(finder: _Neighbours, unique: str, module: ModuleType) -> Iterator
         sys.modules.update(before)
 
 
+def failed(error: BaseException, shown: Path) -> LoomfmuError:
+    """Return the one line on an error of a file's code, with the line of the last step in its folder."""
+    return LoomfmuError(f"{_place(error, shown)}: {described(error)}")
+
+
 def _place(error: BaseException, shown: Path) -> str:
-    """File and line of the last step of an error that lies in the component's folder."""
     folder = shown.resolve().parent
     steps = [
         step for step in traceback.extract_tb(error.__traceback__) if Path(step.filename).parent == folder
@@ -155,26 +176,24 @@ def _shown(path: Path, shown: Path) -> Path:
 # ---- the class
 
 
-def _chosen(module: ModuleType, name: str, shown: Path) -> type[Component]:
-    """The component of a module: the one of that name, or the only one."""
+def _chosen(module: ModuleType, name: str, shown: Path, wanted: Wanted) -> Any:
+    """The class of a module: the one of that name, or the only one."""
     found = {
         each.__name__: each
         for each in vars(module).values()
-        if inspect.isclass(each) and issubclass(each, Component) and each.__module__ == module.__name__
+        if inspect.isclass(each) and issubclass(each, wanted.base) and each.__module__ == module.__name__
     }
-    whole = {n: each for n, each in found.items() if each.step is not Component.step}
+    whole = {n: each for n, each in found.items() if wanted.is_whole(each)}
     if name:
         if name not in found:
-            raise LoomfmuError(f"{shown}: it has no component {name!r}{suggestion(name, found)}")
+            raise LoomfmuError(f"{shown}: it has no {wanted.noun} {name!r}{suggestion(name, found)}")
         return found[name]
     if not found:
-        raise LoomfmuError(
-            f"{shown}: it has no component; declare a class on ShaftDriven or Component of loomfmu.mechanism"
-        )
+        raise LoomfmuError(f"{shown}: it has no {wanted.noun}; {wanted.remedy}")
     candidates = whole or found
     if len(candidates) > 1:
         listed = ", ".join(f"{shown}:{each}" for each in candidates)
-        raise LoomfmuError(f"{shown}: it has {len(candidates)} components; name one: {listed}")
+        raise LoomfmuError(f"{shown}: it has {len(candidates)} {wanted.noun}s; name one: {listed}")
     return next(iter(candidates.values()))
 
 
@@ -182,7 +201,7 @@ def _check(chosen: type[Component], shown: Path, text: str) -> None:
     """Refuse a component that cannot be an FMU, live and native."""
     fault = declared.fault(chosen, set(COMPONENTS))
     if fault is not None:
-        raise LoomfmuError(f"{shown}, line {_line(text, chosen.__name__, fault.field)}: {fault.text}")
+        raise LoomfmuError(f"{shown}, line {line(text, chosen.__name__, fault.field)}: {fault.text}")
     from ..fmi.native.translate import translate
 
     try:
@@ -191,7 +210,7 @@ def _check(chosen: type[Component], shown: Path, text: str) -> None:
         raise LoomfmuError(f"{shown}: {error}") from None
 
 
-def _line(text: str, name: str, field: str) -> int:
+def line(text: str, name: str, field: str) -> int:
     """The line of a class that declares a field or a method, or else of the class itself."""
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.ClassDef) and node.name == name:
@@ -203,3 +222,12 @@ def _line(text: str, name: str, field: str) -> int:
                     return inner.lineno
             return node.lineno
     return 1
+
+
+COMPONENT = Wanted(
+    Component,
+    "component",
+    "declare a class on ShaftDriven or Component of loomfmu.mechanism",
+    lambda each: each.step is not Component.step,
+    _check,
+)

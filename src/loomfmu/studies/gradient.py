@@ -69,8 +69,8 @@ class Gradient:
 def gradient(
     scene: str | Path | Scene,
     *,
-    of: Sequence[str],
-    by: Sequence[str],
+    of: str | Sequence[str],
+    by: str | Sequence[str],
     set: dict[str, Any] | None = None,  # the command's own word
 ) -> Gradient:
     """Derive claims and signals of a scene by parameters, at its values.
@@ -85,11 +85,12 @@ def gradient(
         of: names of claims, whose distances from the bound are derived, and signals: one that holds an
             extreme by its name, others as "highest belt.deflection", "lowest ...",
             "mean ..." or "... at 90 deg"
-        by: parameters of our components, such as "shaft.speed"
+        by: parameters of our components, such as "shaft.speed"; of and by may be one name or several
 
     Raises:
         LoomfmuError: an unknown name; a parameter, claim or FMU without derivatives; or a run that failed
     """
+    of, by = ([each] if isinstance(each, str) else each for each in (of, by))
     for name, given in (("of", of), ("by", by)):
         if (
             not isinstance(given, list | tuple)

@@ -68,6 +68,12 @@ class Span(Keyed):
         """The range as text."""
         return f"{self.number(self.low)} to {self.show(self.high)}"
 
+    @property
+    def exact(self) -> str:
+        """The range as text with all digits of its ends."""
+        low, high = (units.exact(end, self.varied.display) for end in (self.low, self.high))
+        return f"{low} to {high}" + ("" if self.unit == "1" else f" {self.unit}")
+
 
 def span_of(scene: Scene, text: str, from_: Any = None, to: Any = None, option: str = "vary") -> Span:
     """Return the variable that `option` names, over the given range, `from_` to `to`, or a usual one.

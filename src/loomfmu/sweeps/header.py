@@ -10,12 +10,11 @@ import numpy as np
 
 from ..cosim.importing.built import Flavour, check_flavour
 from ..cosim.reading import checked_claims
-from ..cosim.scenes import scene as scenes
+from ..cosim.reading import read as read_scene
 from ..cosim.scenes.notes import check_effect
 from ..cosim.scenes.scene import Scene
 from ..cosim.scenes.settings import text as text_in
 from ..cosim.scenes.settings import toml
-from ..cosim.ssp import read as ssp_read
 from ..errors import LoomfmuError, suggestion
 from ..files import text_of
 from .axes import Axis, flattened
@@ -40,12 +39,6 @@ class Header:
     scene: Scene
     flavour: Flavour
     fixed: dict[str, Any]
-
-
-def read_scene(path: Path, fixed: dict[str, Any]) -> Scene:
-    """A scene from its file or its system package."""
-    reader = ssp_read.load if path.suffix.lower() == ".ssp" else scenes.load
-    return reader(path, fixed)
 
 
 def read(

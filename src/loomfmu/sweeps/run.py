@@ -12,7 +12,7 @@ from ..display.progress import Advance
 from ..display.progress import progress as progress_bar
 from ..errors import LoomfmuError, described, path_of
 from ..extras import installed
-from ..files import ANY, write_file
+from ..files import ANY, check_target, write_file
 from ..traces import TRACE
 from . import plan as plans
 from .plan import SweepPlan
@@ -83,6 +83,21 @@ class Sweep:
     def __bool__(self) -> bool:
         return self.holds
 
+    def to_pandas(self) -> Any:
+        """The table as a pandas `DataFrame`, in SI, with claims by their names, such as `NAME.distance`."""
+        from .exported import to_pandas
+
+        return to_pandas(self.table)
+
+    def to_xarray(self) -> Any:
+        """The table as an xarray `Dataset`, in SI with units, along the axes of the grid.
+
+        With a sample it is along its rows. Raises LoomfmuError without `loomfmu[xarray]`.
+        """
+        from .exported import to_xarray
+
+        return to_xarray(self.table, self.plan.axes)
+
     def _count(self, holds: bool) -> int:
         return int(self.table["holds"].to_pylist().count(holds))
 
@@ -94,6 +109,7 @@ def sweep(
     output: str | Path | None = None,
     scheduler: str | None = None,
     restart: bool = False,
+    overwrite: bool = False,
     progress: bool = False,
 ) -> Sweep:
     """Run a sweep, or what is left of it, and make its table, picture and traces.
@@ -101,9 +117,11 @@ def sweep(
     Args:
         path: the sweep file
         processes: worker processes on this machine, all cores by default; 1 runs in this process
-        output: directory of the results; `results/<sweep>` below the current directory by default
+        output: directory of the results; `results/<sweep>` below the current directory by default. A file
+            .csv gets the table, in the units that people read, beside the usual directory
         scheduler: address of a dask scheduler, such as "tcp://host:8786", whose workers run the rows
         restart: discard earlier results in the directory, of this or another sweep
+        overwrite: replace a file .csv that is not the table of a sweep
         progress: show a progress bar, if standard error is a terminal
 
     Raises:
@@ -113,12 +131,17 @@ def sweep(
     check_place(processes, scheduler)
     path = path_of(path, "sweep")
     plan = plans.load(path)
+    from . import exported
     from .store import opened
 
     job = job_of(plan, plan.values)
-    directory = path_of(output, "output") if output is not None else Path("results") / plan.name
+    inputs, wanted = [Path(path), *files_of(plan.scene)], path_of(output, "output") if output else None
+    written = wanted if wanted and wanted.suffix == ".csv" else None
+    if written:
+        check_target(written, exported.TABLE, inputs, overwrite)  # before the runs
+    directory = wanted if wanted and not written else Path("results") / plan.name
     with resumable(directory, "rows"):
-        fingerprint, inputs = _fingerprint(plan, job), [Path(path), *files_of(plan.scene)]
+        fingerprint = _fingerprint(plan, job)
         with opened(directory, plan, fingerprint, restart, inputs) as store, ExitStack() as pools:
             here = pools.enter_context(closing(local(plan.scene, processes, plan.rows)))
             rows_pool = pools.enter_context(closing(cluster(scheduler))) if scheduler else here
@@ -128,6 +151,8 @@ def sweep(
             found = _indices(store, table)
             traces, untraced = _run_traces(store, job, table, here, progress)
             store.tidy()
+    if written:
+        write_file(written, exported.csv(table).encode(), exported.TABLE, inputs, overwrite)
     return Sweep(plan, table, store.table_path, ran, picture, traces, untraced, found)
 
 

@@ -3,8 +3,8 @@
 One row for each combination: its number, the value on each axis, final values of signals, of each claim
 whether it holds, whether it is decided, its worst value, its bound, the signed distance between them, its
 numerical error and the verdict's note, whether all hold, the first one that does not, warnings, and why a row
-could not be run. All in SI; a column's metadata has `unit`, `display_unit` and `description`, the table's the
-texts of sweep and scene.
+could not be run. All in SI; a column's metadata has `unit`, `display_unit` and `description`, that of a claim
+its name as `claim`; the table's has the texts of sweep and scene.
 """
 
 import json
@@ -53,7 +53,8 @@ def schema_of(plan: SweepPlan, labels: tuple[Label, ...]) -> Any:
         *(_value(signal, plan.port(signal)) for signal in plan.values),
     ]
     for number in range(len(plan.scene.claims)):
-        fields += _claim(number, labels[number] if labels else None)
+        name = str(plan.scene.claims[number].get("name") or "")
+        fields += _claim(number, name, labels[number] if labels else None)
     fields += [
         pa.field("holds", pa.bool_(), metadata={"description": "Whether all claims hold"}),
         pa.field("first_failing_claim", pa.string(), metadata={"description": "The first claim that fails"}),
@@ -87,12 +88,22 @@ def labels_of(table: Any) -> tuple[Label, ...]:
 
 def column_of(table: Any, name: str) -> tuple[str, str, NDArray[np.float64]]:
     """The words of a column, the unit that people read it in, and its values in that; NaN for none."""
-    field = table.schema.field(name)
-    about = {key.decode(): text.decode() for key, text in (field.metadata or {}).items()}
+    about = about_column(table, name)
     display = about.get("display_unit", "1")
     values = table[name].cast("float64").to_numpy() / units.unit(display).factor
     words = about.get("description", name) if name.startswith("claim_") else name
     return words, shown_unit(about.get("unit", "1"), display), values
+
+
+def about_column(table: Any, name: str) -> dict[str, str]:
+    """Return what a column says of itself."""
+    metadata = table.schema.field(name).metadata or {}
+    return {key.decode(): text.decode() for key, text in metadata.items()}
+
+
+def is_number(table: Any, name: str) -> bool:
+    """Return whether a column has real numbers."""
+    return bool(table.schema.field(name).type == TYPES["Real"])
 
 
 def whole_table(plan: SweepPlan, parts: list[Any]) -> Any:
@@ -119,8 +130,8 @@ def _value(signal: str, port: Port) -> Any:
     return pa.field(signal, TYPES[port.kind], metadata=about)
 
 
-def _claim(number: int, label: Label | None) -> list[Any]:
-    """The columns of a claim."""
+def _claim(number: int, name: str, label: Label | None) -> list[Any]:
+    """The columns of a claim, which say its name if it has one of its own."""
     about: dict[str, str] = {}
     if label is not None:
         about = _about(label.unit, label.display_unit, label.claim) | {"signal": label.signal}
@@ -131,7 +142,11 @@ def _claim(number: int, label: Label | None) -> list[Any]:
     }
     types = [said.get(part, (pa.float64(), about)) for part in ClaimResult._fields]
     names = claim_columns(number, *ClaimResult._fields)
-    return [pa.field(name, type_, metadata=words) for name, (type_, words) in zip(names, types, strict=True)]
+    named = {"claim": name} if name else {}
+    return [
+        pa.field(column, type_, metadata=words | named)
+        for column, (type_, words) in zip(names, types, strict=True)
+    ]
 
 
 def _about(unit: str, display: str, description: str) -> dict[str, str]:

@@ -18,10 +18,11 @@ from ..cosim.claims.claims import called
 from ..cosim.importing.fmus import Flavour
 from ..cosim.master.master import Interrupted
 from ..cosim.prepared import Errors, Prepared
+from ..cosim.reading import read
 from ..cosim.scenes.scene import Scene
 from ..errors import LoomfmuError, described
 from ..traces import Verdict
-from .header import Header, read_scene
+from .header import Header
 
 # the threads of one process share the instances that rest between runs: they take turns
 _turn = threading.Lock()
@@ -121,7 +122,7 @@ def run_trace(job: Job, settings: dict[str, Any], path: Path) -> None:
 @lru_cache(maxsize=4)
 def _prepared(job: Job) -> Prepared:
     """The scene as this worker sees it, prepared."""
-    scene = read_scene(job.path, dict(job.fixed))
+    scene = read(job.path, dict(job.fixed))
     if identity(scene, job.flavour) != job.identity:
         raise LoomfmuError(
             f"{job.path}: a worker has another version of loomfmu, or the file has changed since the start"

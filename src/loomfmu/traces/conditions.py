@@ -33,6 +33,9 @@ def angles_where(run: Any, condition: str) -> Floats:
         bound = units.parse(quantity, run.unit(signal))
     except UnitError as error:
         raise LoomfmuError(f"the condition {shown(condition)}: {error}") from None
+    if bound and run.unit(signal) != "1" and units.is_plain(quantity):
+        meant = f"{signal} {comparison} {quantity} {run.displayed(signal)[1]}"
+        raise LoomfmuError(f'the condition {shown(condition)}: {quantity} has no unit; write "{meant}"')
     met = COMPARISONS[comparison](values, bound)
     smooth = np.isfinite(values) if values.dtype.kind == "f" else np.zeros(len(values), dtype=bool)
     if known := run.validity(signal):

@@ -1,6 +1,8 @@
 """FMUs of our own: known from their declarations, built when they are needed, native where they can be."""
 
 import io
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import fmpy
@@ -14,6 +16,9 @@ from loomfmu.cosim.importing import fmus
 from loomfmu.cosim.importing.built import file_of, run_files
 from loomfmu.cosim.importing.descriptions import declared_ports, ports_of
 from loomfmu.cosim.scenes import scene as scenes
+from loomfmu.declaring.arrays import array
+from loomfmu.declaring.declarations import output
+from loomfmu.declaring.variables import Component
 from loomfmu.fmi.description.model_description import model_description
 from loomfmu.fmi.fmu_files import zipped
 from loomfmu.fmi.native import platforms
@@ -30,6 +35,21 @@ def test_declared_variables_are_those_that_the_description_has(name: str) -> Non
     declared = declared_ports(COMPONENTS[name])
     assert declared == read
     assert repr(declared) == repr(read)  # types as well: 1 is not 1.0
+
+
+@dataclass(slots=True)
+class Row(Component):
+    """Places in a row, with their rates."""
+
+    place: Sequence[float] = array(output("m", f"Place {n}", rate=f"rate_{n}") for n in (1, 2))
+    rate: Sequence[float] = array(output("m/s", f"Rate {n}") for n in (1, 2))
+
+
+def test_the_rates_of_an_array_of_outputs_are_found_in_the_description() -> None:
+    packed = io.BytesIO(zipped({"modelDescription.xml": model_description(Row, guid="", version="")}))
+    read = ports_of(fmpy.read_model_description(packed, validate=False), Row)
+    assert (read["place_1"].rate, read["place_2"].rate) == ("rate_1", "rate_2")
+    assert read == declared_ports(Row)
 
 
 @pytest.mark.parametrize("flavour", fmus.FLAVOURS)

@@ -253,6 +253,12 @@ def test_an_exception_in_a_component_is_told_in_one_line(tmp_path: Path, counted
 
 
 @pytest.mark.usefixtures("odd")
+def test_a_problem_that_is_not_declared_ends_the_run_and_not_the_process(tmp_path: Path) -> None:
+    with pytest.raises(LoomfmuError, match=r"odd at 0\.10005 s: .* IndexError"):
+        traced(odd_scene("Undeclared"), tmp_path)
+
+
+@pytest.mark.usefixtures("odd")
 def test_a_complaint_at_the_start_is_told_before_anything_is_written(tmp_path: Path) -> None:
     with pytest.raises(LoomfmuError, match=r"^odd: the level of 7 is no level$"):
         traced(odd_scene("Complaining"), tmp_path)

@@ -11,6 +11,7 @@ from live_fmus import COMPONENTS, NAMES
 from loomfmu import units
 from loomfmu.cosim.importing import fmus
 from loomfmu.declaring.variables import Variable, variables_of
+from loomfmu.fmi.dataflow.dependencies import dependencies
 from loomfmu.fmi.description.model_description import model_description
 from loomfmu.fmi.live.live_slave import CATEGORIES
 from loomfmu.version import __version__
@@ -192,11 +193,10 @@ def test_structure_lists_every_output_with_the_inputs_it_depends_on(name: str) -
     """That the outputs depend on no others is tested of the components themselves."""
     root = xml(name)
     places = {variable.name: place for place, variable in enumerate(variables_of(COMPONENTS[name]), start=1)}
-    inputs = [v.name for v in variables_of(COMPONENTS[name]) if v.causality == "input"]
+    inputs = {v.name for v in variables_of(COMPONENTS[name]) if v.causality == "input"}
     wanted = {
-        places[v.name]: {places[needed] for needed in (inputs if v.depends is None else v.depends)}
-        for v in variables_of(COMPONENTS[name])
-        if v.causality == "output"
+        places[output]: {places[each] for each in needed & inputs}
+        for output, needed in dependencies(COMPONENTS[name]).items()
     }
     found = {
         int(unknown.attrib["index"]): {int(place) for place in unknown.attrib["dependencies"].split()}

@@ -2,20 +2,27 @@
 
 import json
 import math
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 from scene_texts import claim
 
 from loomfmu.cosim.scenes.scene import parse
+from loomfmu.declaring.declarations import input_, output
+from loomfmu.declaring.variables import NOTHING, Component
 from loomfmu.errors import LoomfmuError
 from loomfmu.studies.proving import certificate
 from loomfmu.studies.proving.proofs import Proofs
 from loomfmu.studies.proving.prove import prove
 
 pytest.importorskip("flint")
+from loomfmu.studies.proving import check as checking
 from loomfmu.studies.proving.check import check
+from loomfmu.studies.proving.intervals import Interval, joined, number
 
 WITHOUT_FRAMES = """
 revolutions = 1
@@ -51,10 +58,8 @@ def test_a_certificate_is_confirmed(told: dict[str, Any], tmp_path: Path) -> Non
     lines = _check(told, tmp_path)
     names = ("margin", "dwell", "transfer")
     assert [line.split(" (")[0] for line in lines] == [f"confirmed: {name}" for name in names]
-    assert (
-        "bound = 0.1) for all shaft angles of 2 revolutions, shaft.speed from 640 rev/min to 645 rev/min"
-        in lines[0]
-    )
+    box = "for all shaft angles of 2 revolutions, shaft.speed from 640 to 645 rev/min"
+    assert f"bound = 0.1) {box}" in lines[0]
 
 
 FORGED = [  # what is done to a certificate, and what is said of it
@@ -67,7 +72,18 @@ FORGED = [  # what is done to a certificate, and what is said of it
         f'told["scene"] = {WITHOUT_FRAMES!r}\ntold["claims"] = [{{"name": "shed", "conditions": []}}]',
         "no heald frame",
     ),
-    ('told["over"]["shaft.start_angle"] = ["0x0p0", (1e-3).hex()]', "varies twice"),
+    ('told["over"]["shaft.start_angle"] = ["0x0p0", (1e-3).hex()]', "all shaft angles are proven"),
+    ('told["over"]["revolutions"] = [(2.0).hex(), (100.0).hex()]', "revolutions cannot vary in a proof"),
+    (
+        'told["over"]["heald.stroke"] = [(0.097).hex(), (0.099).hex()]\n'
+        'told["overrides"] = {"heald_2.stroke": "150 mm"}',
+        "heald_2.stroke keeps a value of its own",
+    ),
+    (
+        'told["scene"] = told["scene"].replace("revolutions = 2", "revolutions = 1e7", 1)',
+        "more than 1000 revolutions",
+    ),
+    ('told["texts"] = {"a": "", "a/b": ""}', "is not a certificate"),
     (
         'told["over"]["heald_2.stroke"] = [(0.01).hex(), (0.9).hex()]\n'
         'told["over"]["heald.stroke"] = [(0.098).hex(), (0.0981).hex()]',
@@ -124,6 +140,68 @@ def test_a_meeting_is_confirmed_at_the_angle_that_the_certificate_names(tmp_path
         covers[0][0] = angle.hex()
         with pytest.raises(LoomfmuError, match=message):
             _check(told, tmp_path)
+    covers[0].clear()
+    with pytest.raises(LoomfmuError, match="is not a certificate"):
+        _check(told, tmp_path)
+
+
+def test_the_start_angle_of_the_scene_is_no_side_of_the_box(loom: Any, tmp_path: Path) -> None:
+    text = loom.text.split("[[claims]]")[0] + claim(
+        "below", name="turn", signal="dobby.rotor_angle", bound=20
+    )
+    certificate.write(prove(parse(text, "loom")), tmp_path / "proof.json")
+    told = json.loads((tmp_path / "proof.json").read_text())
+    assert len(_check(told, tmp_path)) == 1
+    told["scene"] = text.replace("bound = 20", 'bound = "shaft.start_angle"')
+    with pytest.raises(LoomfmuError, match="is not confirmed"):
+        _check(told, tmp_path)
+
+
+def fill(values: list[float], value: float) -> None:
+    values[0] = value
+
+
+def fill_both(values: list[float], value: float) -> None:
+    fill(values, value)
+    values[1] = value
+
+
+@dataclass(slots=True)
+class Filling(Component):
+    """A mechanism whose functions write to lists."""
+
+    keeps = NOTHING
+    x: float = input_("1", 0.0, "A number")
+    sum: float = output("1", "A sum")
+
+    def initialize(self, time: float) -> int:
+        """Compute."""
+        values = [0.0, 0.0]
+        fill_both(values, self.x + 5.0)
+        self.sum = values[0] + values[1]
+        return 0
+
+
+def test_the_check_keeps_what_functions_write_to_lists() -> None:
+    module = checking._module(Filling, ["sum"], SimpleNamespace(start=lambda _name: 0.0))
+    Interval.sides = 1
+    placed = joined(partial(checking._started, Filling, module, ["sum"], [0]))
+    (found,) = placed({"x": Interval((0.0, 1.0), [(1.0, 1.0)]), "sum": 0.0}, number(0.0))
+    assert found.ends == pytest.approx((10.0, 12.0)) and found.ends[0] <= 10.0 <= 12.0 <= found.ends[1]
+
+
+def test_a_slope_that_is_0_at_an_end_of_a_box_is_confirmed(tmp_path: Path) -> None:
+    over, wider = ["shaft.speed=600rpm..610rpm"], {"transfer.needed_overlap": "0.05 m"}
+    found = prove(RAPIERS, over=over, set=wider, claims=["the hooks pass each other slowly"])
+    certificate.write(found, tmp_path / "proof.json")
+    assert len(check(tmp_path / "proof.json")) == 1
+
+
+def test_a_loom_that_turns_backwards_is_confirmed(loom: Any, tmp_path: Path) -> None:
+    scene = parse(loom.text.replace('bound = "shaft.speed"', "bound = 1"))
+    found = prove(scene, over=["shaft.speed=-400rpm..-399rpm"], claims=["margin", "transfer"])
+    certificate.write(found, tmp_path / "proof.json")
+    assert len(check(tmp_path / "proof.json")) == 2
 
 
 @pytest.mark.parametrize("text", ["", "{}", '{"format": "loomfmu proof 9"}', "[1, 2]", "[" * 5000])

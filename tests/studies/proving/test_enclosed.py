@@ -104,6 +104,7 @@ class Jumping(Component):
     angle: float = output("1", "The angle of a point that goes round")
     whole: float = output("1", "Its whole part")
     sign: float = output("1", "Its square, or the opposite of it below 0")
+    cube: float = output("1", "Its third power")
     nothing: float = output("1", "0 times a root")
     bounded: float = output("1", "The sine of an inverse")
     clamped: float = output("1", "A root that is limited")
@@ -123,6 +124,7 @@ class Jumping(Component):
         self.root = sqrt(self.x)
         self.angle = atan2(0.0 - self.x, -1.0)
         self.whole = 1.0 * floor(self.x)
+        self.cube = self.x * self.x * self.x
         self.nothing = 0.0 * sqrt(self.x)
         self.bounded = sin(1.0 / self.x)
         self.clamped = sqrt(self.x) if sqrt(self.x) < 1.0 else 1.0
@@ -141,6 +143,7 @@ ODD = [
     ("root", (0.25, 1.0), (0.5, 1.0), True),
     ("angle", (-0.1, 0.1), (-math.pi, math.pi), False),
     ("whole", (0.9, 1.1), (0.0, 1.0), False),
+    ("cube", (3e204, 8e204), (0.0, math.inf), False),
     ("nothing", (-0.1, 0.1), (-math.inf, math.inf), False),
     ("bounded", (-0.1, 0.1), (-math.inf, math.inf), False),
     ("clamped", (-0.1, 0.1), (-math.inf, math.inf), False),

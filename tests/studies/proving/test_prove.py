@@ -2,12 +2,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scene_texts import claim
 
 import loomfmu
 from loomfmu.cli import main
 from loomfmu.cosim.claims.conditions import FALLS, IN, OUT, RISES, UNKNOWN, Spans, Sum
+from loomfmu.cosim.reading import requested
 from loomfmu.cosim.scenes.scene import Scene, parse
 from loomfmu.errors import LoomfmuError
+from loomfmu.studies.proving.chain import Chain
 from loomfmu.studies.proving.proofs import Proofs
 from loomfmu.studies.proving.proofs_shown import draw
 from loomfmu.studies.proving.prove import prove
@@ -94,6 +97,29 @@ def test_a_start_up_and_a_table_of_inputs_are_proven_over_time(loom: Scene, text
     assert prove(above, claims=["margin"]).claims[0].status == "refuted"
 
 
+def test_nothing_is_proven_of_an_input_that_follows_a_table(loom: Scene) -> None:
+    table = '[inputs]\n"heald_1.load" = [[0, 10], [1, 20]]\n'
+    text = loom.text.split("[[claims]]")[0] + table + claim("below", signal="heald_1.load", bound=15)
+    (found,) = prove(parse(text, "loom")).claims
+    assert (found.status, found.why) == (
+        "cannot be proven",
+        "heald_1.load is an input that follows a table or a wire",
+    )
+
+
+def test_the_sense_of_a_turn_is_that_of_the_range_not_of_the_scene(loom: Scene) -> None:
+    table = '[inputs]\n"belt.yarn_tension" = [[0, 0], [0.25, 0], [0.3, 9]]\n[[claims]]'
+    text = loom.text.replace("[[claims]]", table, 1).replace('bound = "shaft.speed"', "bound = 1")
+    boxes = np.repeat(np.array([[0.02, -60.0], [0.04, -60.0]])[..., None], 2, axis=-1)
+    margins = []
+    for speed in ("600 rev/min", "-600 rev/min"):
+        scene = requested(parse(text.replace("600 rev/min", speed), "loom"), None, "native").scene
+        chain = Chain(scene, ["belt.margin"], {("shaft", "speed"): 1})
+        margins.append(chain.numbers(boxes)["belt.margin"].values)
+        assert chain.number("shaft.start_angle", {}, boxes).values.tolist() == 2 * [[0.0, 0.0]]
+    assert np.array_equal(*margins)
+
+
 def test_a_loom_that_turns_backwards_is_proven_at_its_own_angles(loom: Scene) -> None:
     scene = parse(
         loom.text.replace("600 rev/min", "-600 rev/min").replace('bound = "shaft.speed"', "bound = 1"), "loom"
@@ -118,6 +144,10 @@ def test_a_loom_that_turns_backwards_is_proven_at_its_own_angles(loom: Scene) ->
         ({"over": "shaft.speed=640rpm..300rpm"}, "is empty"),
         ({"boxes": 0}, "boxes = 0 is not a number of boxes"),
         ({"over": ["shaft.start_angle=0deg..10deg"]}, "all shaft angles are proven"),
+        (
+            {"over": ["heald.stroke=97mm..99mm"], "set": {"heald_2.stroke": "105 mm"}},
+            "heald_2.stroke keeps a value of its own",
+        ),
         ({"over": ["belt.head_mass=1g..2g", "belt.head_mass=2g..3g"]}, "both set"),
     ],
 )
@@ -233,9 +263,11 @@ def test_a_run_notes_what_is_proven(
     (tmp_path / "loom.toml").write_text(loom.text)
     assert main(["run", str(tmp_path / "loom.toml"), "--prove", "shaft.speed=300rpm..640rpm"]) == 0
     assert text in " ".join(capsys.readouterr().out.split())
-    assert main(["run", str(tmp_path / "loom.toml"), "--prove", "shaft.speed=300..640"]) == 0
-    assert "warning: shaft.speed = 300 is read as 300 rad/s" in capsys.readouterr().err
-    assert main(["run", str(tmp_path / "loom.toml"), "--prove", "shaft.speed=700rpm..800rpm"]) == 0
+    assert main(["run", str(tmp_path / "loom.toml"), "--prove", "shaft.speed=300..640"]) == 2
+    said = capsys.readouterr().err
+    assert "warning: shaft.speed = 300 is read as 300 rad/s" in said
+    assert "600 rev/min, the scene's value, is outside the range from 2864.789" in said
+    assert main(["run", str(tmp_path / "loom.toml"), "--prove", "shaft.speed=500rpm..800rpm"]) == 0
     said = " ".join(capsys.readouterr().out.split())
-    assert "not proven for shaft.speed from 700 to 800 rev/min:" in said
+    assert "not proven for shaft.speed from 500 to 800 rev/min:" in said
     assert "refuted: margin (shaft.speed = " in said

@@ -45,6 +45,7 @@ class Claim(ABC):
     alone; whether what it judges is to be `AT_LEAST` or `AT_MOST` its bound, and the `unit` of both; and what
     it needs of the window `grid`, which is every step unless it says otherwise. `noise` is what its number
     may be off by with any steps, in its unit. the machine's rules in C hold that by which it is judged.
+    `not_live` says why a page in which the scene runs does not judge it, if so.
     """
 
     name: str = argument(Name(), "")
@@ -56,6 +57,7 @@ class Claim(ABC):
     unit: ClassVar[tuple[str, str]] = ONE
     grid: ClassVar[str] = EVERY_STEP
     noise: ClassVar[float] = 0.0
+    not_live: ClassVar[str] = ""
 
     def __init_subclass__(cls, kind: bool = True) -> None:
         dataclass(frozen=True, kw_only=True)(cls)

@@ -120,6 +120,7 @@ class Spans:
 
     widest: ClassVar[float] = 0.05  # a cell of angles, at first [rad]
     finest: ClassVar[float] = 2.0**-12  # the closest that an end of a span is looked for [rad]
+    most: ClassVar[int] = 2**16  # cells
 
     @property
     def forms(self) -> tuple[Sum, ...]:
@@ -133,7 +134,10 @@ class Spans:
         """
         shown = False
         for form in self.insides:
-            edges = np.linspace(first, last, max(2, math.ceil((last - first) / self.widest)) + 1)
+            cells = max(2, math.ceil((last - first) / self.widest))
+            if cells > self.most:
+                return False
+            edges = np.linspace(first, last, cells + 1)
             while (doubtful := self.doubtful(kinds := kinds_of(form, edges), edges)).any():
                 if (np.diff(edges)[doubtful] < self.finest).any():
                     return False
@@ -208,7 +212,7 @@ def present(signal: str, run: Wired, sense: int) -> str:
 def remembers(variable: Variable) -> bool:
     """Return whether an output holds what was before, such as an extreme."""
     held = variable.one_way and variable.causality == "output" and variable.variability != "fixed"
-    return held and variable.depends != ()
+    return held and not variable.constant
 
 
 def names_of(conditions: Sequence[Condition]) -> list[str]:

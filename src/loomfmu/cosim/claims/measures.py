@@ -13,8 +13,8 @@ from ... import units
 from ...errors import LoomfmuError
 from ...traces import Signals, Verdict
 from .arguments import Name, Quantity, argument
+from .bounded import Above, Below
 from .claim import Claim
-from .claims import Above, Below
 from .judging import Form, Question, needs_shaft, run_of
 from .movers import Wired
 

@@ -202,7 +202,7 @@ def plain_names(names: Iterable[str], recorded: Collection[str] = ()) -> list[st
 def _rates(description: Any, names: dict[str, str], component: type[Component] | None) -> dict[str, str]:
     """Return the outputs and their time derivatives, by our declarations or by the model description."""
     if component is not None:
-        return {v.name: v.rate for v in variables_of(component) if v.rate}
+        return {v.structured: v.rate for v in variables_of(component) if v.rate}
     return {
         variable.derivative.name: names[variable.name]
         for variable in description.modelVariables

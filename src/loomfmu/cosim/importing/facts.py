@@ -1,7 +1,11 @@
 """Facts that follow from the declarations of a component, computed once for each class."""
 
+from collections.abc import Mapping
+from functools import cached_property
+
 from ...components.terminals import SHAFT
 from ...declaring.variables import Component, arrays_of, variables_of
+from ...fmi.identities import needs
 
 ALL = "*."  # in the place of an instance: the output of that name of every instance that has it
 
@@ -41,6 +45,11 @@ class Facts:
         # it has a speed of its own and no way to follow a shaft
         turning = any(each.causality == "parameter" and each.unit == "rad/s" for each in declared)
         self.turns_alone = turning and not self.turns_others and not self.shaft_inputs
+
+    @cached_property
+    def needs(self) -> Mapping[str, frozenset[str]]:
+        """The inputs on which each output depends, now or later, and `TIME`."""
+        return needs(self.component)
 
 
 _known: dict[type[Component], Facts] = {}

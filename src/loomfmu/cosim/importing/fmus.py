@@ -96,12 +96,18 @@ class Fmu:
         """The kind of state that it keeps; of a third-party FMU the fullest, so that every step counts."""
         return self.component.keeps if self.component else MOTION
 
-    @property
+    @cached_property
     def facts(self) -> Facts | None:
         """Facts of its component; None if that is not known."""
         return facts_of(self.component) if self.component else None
 
-    @property
+    @cached_property
+    def rated_inputs(self) -> tuple[tuple[str, str], ...]:
+        """Its inputs with another one that is their rate, and that."""
+        ports = self.ports.items()
+        return tuple((name, port.rate) for name, port in ports if port.causality == "input" and port.rate)
+
+    @cached_property
     def shaft_inputs(self) -> tuple[str, ...]:
         """The inputs by which it follows a shaft; its inputs tell where its component is not known."""
         if self.facts:

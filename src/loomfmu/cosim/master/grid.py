@@ -149,10 +149,10 @@ def _fed_apart(
     """The instances with a wired input whose rate comes from elsewhere, or from nowhere."""
     found, fed = dict[str, str](), {*wired, *driven}
     for name, instance in scene.instances.items():
-        for variable, port in instance.fmu.ports.items():
-            if port.causality != "input" or port.rate is None or instance.switched_off(variable)[0]:
+        for variable, its_rate in instance.fmu.rated_inputs:
+            if instance.switched_off(variable)[0]:
                 continue
-            here, there = (name, variable), (name, port.rate)
+            here, there = (name, variable), (name, its_rate)
             value, rate = ".".join(here), ".".join(there)
             if here in wired and there not in wired:
                 how = "a table" if there in driven else "constant"

@@ -44,9 +44,8 @@ def beside_of(scene: Scene, signal: str) -> Beside:
     driven = {drive.variable for drive in scene.drives if drive.instance == instance}
     steady = variable in driven
     if facts is not None and facts.component.keeps != MOTION and variable not in driven:
-        declared = facts.variables[variable]
-        needed = {TIME} if declared.depends is None else {*declared.depends}
-        steady = not needed & {TIME, *wired, *(driven - {declared.follows})}
+        follows = facts.variables[variable].follows
+        steady = facts.needs[variable].isdisjoint({TIME, *wired, *(driven - {follows})})
     return port.beside._replace(lowest=variable, highest=variable) if steady else port.beside
 
 
@@ -85,7 +84,10 @@ class Requested:
     def __init__(self, scene: Scene):
         """Read the claims. Raises LoomfmuError for one that cannot be read."""
         self.scene = scene
-        self.claims = [read(table, partial(_unit, scene, place_of(table))) for table in scene.claims]
+        directory = None if scene.package else scene.directory  # a package is data, but for its FMUs
+        self.claims = [
+            read(table, partial(_unit, scene, place_of(table)), directory) for table in scene.claims
+        ]
 
     @cached_property
     def wires(self) -> dict[str, str]:

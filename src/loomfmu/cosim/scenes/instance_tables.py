@@ -128,7 +128,7 @@ def _of_component(name: str, component: str, directory: Path, texts: dict[str, s
         return fmus.of_component(component)
     try:
         made = load.component(component, directory)
-        texts |= load.texts(component, directory)
+        texts |= load.texts(component, directory, load.COMPONENT)
         return fmus.of_class(made)
     except LoomfmuError as error:
         raise LoomfmuError(f"{name}.component: {error}") from None

@@ -10,6 +10,7 @@ from typing import Any
 
 from ... import files
 from ...errors import LoomfmuError
+from ..claims import own_claims
 from ..importing.fmus import Value
 from ..importing.process import AVAILABLE
 from . import notes
@@ -163,6 +164,7 @@ def parse(
         overrides=dict(overrides or {}),
         texts=given.texts,
     )
+    scene.texts |= own_claims.texts(scene.claims, scene.directory)
     if not {"loom", "claims"} & set(tables) and not set(tables) - set(KEYS):
         raise LoomfmuError("the scene is empty: add [loom] for a standard loom, or tables such as [weft]")
     return scene

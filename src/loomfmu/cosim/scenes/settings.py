@@ -23,6 +23,7 @@ KEYS = (
 )
 LAGGED, ITERATED = COUPLINGS = ("lagged", "iterated")
 UNIFORM, WINDOWS = GRIDS = ("uniform", "windows")
+MOST_STEPS = 1e9  # in a revolution
 CHOSEN = ("steps_per_revolution", "grid", COARSE)  # what an accuracy chooses
 # what files are: the command that takes each kind, and keys that tell it from the others
 KINDS = {
@@ -140,7 +141,8 @@ def _times(tables: dict[str, Any]) -> Times:
     given = [key for key in TIMES if key in tables]
     if not {"duration", "step"} & set(given):
         revolutions = number(tables.get("revolutions", 1), "revolutions", 1e-9, 1e9)
-        steps = number(tables.get("steps_per_revolution", 1440), "steps_per_revolution", 1, 1e9, whole=True)
+        asked = tables.get("steps_per_revolution", 1440)
+        steps = number(asked, "steps_per_revolution", 1, MOST_STEPS, whole=True)
         return Times(revolutions, int(steps))
     if len(given) == 1:
         missing = "duration" if given == ["step"] else "step"

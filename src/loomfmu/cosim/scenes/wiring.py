@@ -253,8 +253,7 @@ def _fed_along(known: Known, sources: Mapping[str, Any]) -> dict[str, str]:
     found: dict[str, str] = {}
     for name, v in _caused(known):
         owner = str(sources.get(f"{name}.{v.source_for}", "")).partition(".")[0]
-        outputs = known[name].outputs.values()
-        reached = [f"{name}.{o.name}" for o in outputs if o.depends is None or v.name in o.depends]
+        reached = [f"{name}.{output}" for output, needed in known[name].needs.items() if v.name in needed]
         if owner in known and not taken.isdisjoint(reached):
             found |= _usual_wire(name, v, [owner])
     return found
@@ -265,11 +264,9 @@ def left_out(known: Known, wired: Collection[str], signal: str) -> dict[str, str
     owner, _, output = signal.partition(".")
     if owner not in known:
         return {}
-    outputs, variable = known[owner].outputs, known[owner].variables.get(output)
-    depends = variable.depends if variable else ()
     found: dict[str, str] = {}
     for v in known[owner].caused:
-        needed = v.source_for in outputs and (depends is None or v.name in depends)
+        needed = v.source_for in known[owner].outputs and v.name in known[owner].needs.get(output, ())
         if needed and f"{owner}.{v.name}" not in wired:
             found |= _usual_wire(owner, v, known)
     return found

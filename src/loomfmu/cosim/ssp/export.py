@@ -17,6 +17,7 @@ from ...fmi import fmu_files
 from ...fmi.description.model_description import DEFAULT_TOLERANCE
 from ...fmi.description.xml_text import text_of
 from ...fmi.native import platforms as native
+from ...own import load
 from ...version import __version__
 from ..importing import fmus
 from ..importing.conversions import Definition
@@ -51,6 +52,8 @@ def export(
     """
     if scene.package is not None:
         raise LoomfmuError(f"{scene.package} is already a system package")
+    if own := next((str(each["kind"]) for each in scene.claims if load.is_file(each.get("kind"))), ""):
+        raise LoomfmuError(f"{own} judges a claim, and a system package holds no Python files; leave it out")
     inputs = files_of(scene)
     check_target(path, PACKAGE, inputs, overwrite)  # before the FMUs are built
     content = fmu_files.zipped(contents(scene, flavour or default_flavour(scene), platforms))

@@ -1,10 +1,10 @@
 """modelDescription.xml of an FMI 2.0 or FMI 3.0 FMU, derived from a component's declarations."""
 
-from collections.abc import Collection, Iterator
 from xml.etree.ElementTree import Element, SubElement
 
 from ... import units
 from ...declaring.variables import NOTHING, TIME, Component, Variable, variables_of
+from ..dataflow.dependencies import dependencies
 from ..live.live_slave import CATEGORIES
 from .references import FIRST_REFERENCE, FMI_TYPES
 from .xml_text import text_of
@@ -36,7 +36,7 @@ def model_description(
     listed = SubElement(root, "ModelVariables")
     for reference, variable in enumerate(variables, start=FIRST_REFERENCE):
         _scalar(listed, reference, variable, name)
-    _structure(root, variables)
+    _structure(root, component)
     return text_of(root)
 
 
@@ -172,25 +172,21 @@ def _text(value: float | int | bool) -> str:
     return str(value).lower() if isinstance(value, bool) else repr(value)
 
 
-def _structure(root: Element, variables: tuple[Variable, ...]) -> None:
-    """Outputs with the inputs they depend on, and the unknowns of the initialization."""
-    index = {variable.name: position for position, variable in enumerate(variables, start=1)}
+def _structure(root: Element, component: type[Component]) -> None:
+    """Outputs with the inputs they depend on, and the unknowns of the initialization.
+
+    In FMI 2.0 neither parameters are known after it, nor is there a variable that is the time.
+    """
+    variables = variables_of(component)
+    index = {v.name: str(place) for place, v in enumerate(variables, start=1)}
+    inputs = [v.name for v in variables if v.causality == "input"]
     structure = SubElement(root, "ModelStructure")
     outputs = SubElement(structure, "Outputs")
     unknowns = SubElement(structure, "InitialUnknowns")
-    for variable, needed in _dependencies(variables):
-        # FMI 2.0 has no variable that is the time
-        dependencies = " ".join(map(str, sorted(index[name] for name in needed if name != TIME)))
-        SubElement(outputs, "Unknown", index=str(index[variable.name]), dependencies=dependencies)
-        SubElement(unknowns, "Unknown", index=str(index[variable.name]))
-
-
-def _dependencies(variables: tuple[Variable, ...]) -> Iterator[tuple[Variable, Collection[str]]]:
-    """Each output with the inputs it depends on, the time among them if it is declared."""
-    inputs = [variable.name for variable in variables if variable.causality == "input"]
-    for variable in variables:
-        if variable.causality == "output":
-            yield variable, inputs if variable.depends is None else variable.depends
+    for output, needed in dependencies(component).items():
+        listed = " ".join(index[name] for name in inputs if name in needed)
+        SubElement(outputs, "Unknown", index=index[output], dependencies=listed)
+        SubElement(unknowns, "Unknown", index=index[output])
 
 
 def output_order(component: type[Component]) -> int:
@@ -244,7 +240,7 @@ def model_description3(component: type[Component], token: str, version: str) -> 
         unit="s",
         description="Simulation time",
     )
-    _structure3(root, variables)
+    _structure3(root, component)
     return text_of(root)
 
 
@@ -268,22 +264,21 @@ def _time_reference(variables: tuple[Variable, ...]) -> int:
     return FIRST_REFERENCE + len(variables)
 
 
-def _structure3(root: Element, variables: tuple[Variable, ...]) -> None:
-    """Outputs with what they depend on (inputs, parameters and time), and the unknowns of the start."""
-    references = {
-        variable.name: reference for reference, variable in enumerate(variables, start=FIRST_REFERENCE)
-    }
-    references[TIME] = _time_reference(variables)
-    parameters = [variable.name for variable in variables if variable.causality == "parameter"]
+def _structure3(root: Element, component: type[Component]) -> None:
+    """Outputs with the knowns they depend on, and the unknowns of the start, which depend on any.
+
+    What is listed is what there are derivatives by, so no parameters where they are fixed after the start.
+    """
+    variables = variables_of(component)
+    references = {v.name: str(place) for place, v in enumerate(variables, start=FIRST_REFERENCE)}
+    references[TIME] = str(_time_reference(variables))
     structure = SubElement(root, "ModelStructure")
-    outputs = list(_dependencies(variables))
-    for variable, needed in outputs:
-        timed = () if variable.depends == () else (TIME,)
-        places = sorted({references[name] for name in (*needed, *parameters, *timed)})
-        own = str(references[variable.name])
-        SubElement(structure, "Output", valueReference=own, dependencies=" ".join(map(str, places)))
-    for variable, _needed in outputs:
-        SubElement(structure, "InitialUnknown", valueReference=str(references[variable.name]))
+    needs = dependencies(component)
+    for output, needed in needs.items():
+        listed = " ".join(place for name, place in references.items() if name in needed)
+        SubElement(structure, "Output", valueReference=references[output], dependencies=listed)
+    for output in needs:
+        SubElement(structure, "InitialUnknown", valueReference=references[output])
     for variable in variables:
         if variable.indicator:
-            SubElement(structure, "EventIndicator", valueReference=str(references[variable.name]))
+            SubElement(structure, "EventIndicator", valueReference=references[variable.name])

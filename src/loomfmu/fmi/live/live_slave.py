@@ -108,12 +108,11 @@ class LiveSlave(Fmi2Slave):
             return
         try:
             problem = self.component.step(time, step_size)
+            self.time = time + step_size
+            self._check_values()
+            self._report(problem)
         except BaseException as error:  # whatever it raises would cut the wrapper's own bookkeeping short
             self.failure = f"at {time!r} s: {type(error).__name__}: {error}"
-            return
-        self.time = time + step_size
-        self._check_values()
-        self._report(problem)
 
     def terminate(self) -> None:
         """There is nothing to release."""

@@ -3,6 +3,7 @@
 import ast
 from collections.abc import Iterator
 
+from ..source import of_self
 from .c_code import (
     ARRAYS,
     REAL,
@@ -15,7 +16,6 @@ from .c_code import (
     c_name,
     fits,
     literal,
-    of_self,
     shown,
 )
 from .c_expressions import Expressions

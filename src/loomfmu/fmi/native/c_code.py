@@ -176,13 +176,6 @@ def comment(text: str, indent: str) -> list[str]:
     return [f"{indent}/* {lines[0]}", *(f"{indent} * {line}".rstrip() for line in lines[1:]), f"{indent} */"]
 
 
-def of_self(node: ast.AST) -> str:
-    """The name of an attribute of `self`, or nothing."""
-    if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "self":
-        return node.attr
-    return ""
-
-
 KEYWORDS = frozenset(
     (
         "auto",
@@ -224,9 +217,6 @@ KEYWORDS = frozenset(
         "void",
         "volatile",
         "while",
-        # macros of its headers
-        "INFINITY",
-        "NAN",
     )
 )
 
@@ -235,5 +225,6 @@ def c_name(name: str) -> str:
     """A name that C takes, with its owner and its index: keywords and macros of C get an underscore."""
     owner, dot, member = name.rpartition(".")
     word, bracket, index = member.partition("[")
-    own = f"{word}_{bracket}{index}" if word in KEYWORDS else member
+    taken = word in KEYWORDS or word.isupper()  # as the macros of its headers are
+    own = f"{word}_{bracket}{index}" if taken else member
     return f"{c_name(owner)}.{own}" if dot else own

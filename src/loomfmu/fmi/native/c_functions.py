@@ -4,6 +4,7 @@ import ast
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
+from ..source import of_self
 from .c_assignments import Assignments, running
 from .c_code import (
     NAMES,
@@ -17,11 +18,11 @@ from .c_code import (
     c_name,
     comment,
     fits,
-    of_self,
     shown,
     sizes,
 )
 from .c_scope import Scope
+from .c_ways import check_ways
 
 
 class FunctionWriter(Assignments):
@@ -32,6 +33,7 @@ class FunctionWriter(Assignments):
 
     def __init__(self, own: Declared, kinds: tuple[Kind, ...], scope: Scope, comments: Mapping[int, str]):
         self.function, self.own = own.function, own
+        check_ways(self.function, returns=bool(own.results))
         arguments = [each.arg for each in self.function.args.args][int(own.method) :]
         self.arguments = dict(zip(arguments, kinds, strict=True))
         lent = frozenset(name for name, kind in self.arguments.items() if not isinstance(kind, str))

@@ -7,6 +7,7 @@ is never changed. So C may copy where Python refers to one object, and both comp
 import ast
 from collections.abc import Iterable
 
+from ..source import of_self
 from .c_code import (
     NAMES,
     REAL,
@@ -22,7 +23,6 @@ from .c_code import (
     c_name,
     fits,
     literal,
-    of_self,
     shown,
 )
 from .c_numbers import PLAIN

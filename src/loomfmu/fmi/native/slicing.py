@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 from ...declaring.variables import Variable
-from .c_code import of_self
+from ..source import of_self
 
 Place = tuple[str, str]  # a function and a name in it; "" for the component's own variables
 RETURNED = "return"  # in the place of a name: what a function returns

@@ -13,13 +13,13 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import groupby
 from pathlib import Path
-from threading import RLock
 from typing import Any
 
 from ...declaring.variables import Component, Variable, arrays_of, variables_of
 from ...errors import LoomfmuError
 from .. import source
-from .c_code import TYPES, Untranslatable, c_name, comment, literal, of_self
+from ..source import of_self, one_at_a_time
+from .c_code import TYPES, Untranslatable, c_name, comment, literal
 from .c_numbers import DUAL, PLAIN, Numbers
 from .c_program import Program
 from .c_scope import Scope
@@ -71,7 +71,7 @@ class Translation:
     @cached_property
     def dual(self) -> Written:
         """With dual numbers."""
-        with _one_at_a_time:
+        with one_at_a_time:
             return self.written(DUAL)
 
     @property
@@ -95,7 +95,6 @@ class Translation:
 
 
 _done: dict[type[Component], Translation] = {}
-_one_at_a_time = RLock()  # Python 3.11 may fail with a SystemError where two threads parse
 
 
 def translate(component: type[Component]) -> Translation:
@@ -103,7 +102,7 @@ def translate(component: type[Component]) -> Translation:
 
     Raises TranslationError where it uses what does not translate; component, function and line are named.
     """
-    with _one_at_a_time:
+    with one_at_a_time:
         if component not in _done:
             _done[component] = _translated(component)
         return _done[component]
@@ -113,7 +112,7 @@ def translate_slice(
     component: type[Component], wanted: Iterable[str], settings: Mapping[str, Any]
 ) -> Written:
     """Return the C of all that some variables depend on with some settings. Raises Untranslatable."""
-    with _one_at_a_time:
+    with one_at_a_time:
         tree = sliced(ast.parse(source.flatten(component)), ENTRIES, wanted, settings)
         return _written(component, tree, {}, PLAIN)
 

@@ -7,9 +7,10 @@ from typing import Any
 
 from ...declaring.declarations import parameter
 from ...declaring.variables import TIME, Component, Problem, Terminal, Variable, variable_of, variables_of
+from ..dataflow.dependencies import dependencies
 
 Value = float | int | bool
-Reach = Callable[[str], tuple[str, ...]]
+Reach = Callable[[str], frozenset[str]]
 STEP, STEPS = "step", "steps_per_revolution"  # the parameter that sets the grid, as scenes call it
 REFERENCES = ("rate", "lowest_of", "highest_of", "when", "unless", "valid_if", "error")  # to variables
 SPEED = "shaft.speed"  # with which a grid by revolutions goes
@@ -63,13 +64,14 @@ class System:
 
 def component_of(system: System) -> type[Component]:
     """The system as a component: its variables are declared, its code is not in Python."""
-    reach = _dependencies(system)
-    variables = (_grid(system), *(v for part in system.parts for v in _variables(system, part, reach)))
+    variables = (_grid(system), *(v for part in system.parts for v in _variables(system, part)))
+    reach = _reach(system)
     members = {
         "__doc__": system.title,
         "declared": classmethod(lambda _cls: variables),
         "problems": (system.problem, *(p for part in system.parts for p in problems_of(system, part))),
         "terminals": tuple(_terminals(system, {v.name: v for v in variables})),
+        "needs": {v.name: reach(v.name) for v in variables if v.causality == "output"},
         "experiment": system.experiment,
     }
     return type(system.name, (Component,), members)
@@ -85,7 +87,7 @@ def _grid(system: System) -> Variable:
     return variable_of(STEPS, parameter("1", system.steps, text, minimum=1, maximum=most))
 
 
-def _variables(system: System, part: Part, reach: Reach) -> list[Variable]:
+def _variables(system: System, part: Part) -> list[Variable]:
     """The variables of a part as those of the system: what is wired, or not an output of it, stays inside."""
 
     found = []
@@ -103,7 +105,6 @@ def _variables(system: System, part: Part, reach: Reach) -> list[Variable]:
             element=f"{part.name}.{each.member}",
             causality=causality,
             start=each.type(part.values.get(each.name, each.start)),
-            depends=(reach(name) or _of_time(each)) if causality == "output" else None,
             indicator=False,
             source=None,
             **dotted,
@@ -112,29 +113,25 @@ def _variables(system: System, part: Part, reach: Reach) -> list[Variable]:
     return found
 
 
-def _of_time(variable: Variable) -> tuple[str, ...]:
-    """On what an output depends that no open input leads to: on time, unless parameters alone give it."""
-    return () if variable.depends == () else (TIME,)
-
-
-def _dependencies(system: System) -> Reach:
-    """A function that gives the open inputs on which a variable depends."""
-    inputs = {
-        part.name: [f"{part.name}.{v.name}" for v in variables_of(part.component) if v.causality == "input"]
-        for part in system.parts
+def _reach(system: System) -> Reach:
+    """A function that gives the open inputs on which a variable depends, `TIME` among them."""
+    names = {
+        f"{part.name}.{v.name}": v.causality for part in system.parts for v in variables_of(part.component)
     }
-    declared = {f"{part.name}.{v.name}": v for part in system.parts for v in variables_of(part.component)}
+    # a communication step may hold several of the system's
+    needs = {part.name: dependencies(part.component, many_steps=True) for part in system.parts}
 
     @cache
-    def reach(name: str) -> tuple[str, ...]:
-        owner = name.partition(".")[0]
-        if name in inputs[owner]:
-            if name in system.wires:
-                return reach(system.wires[name])
-            return () if name in system.drives else (name,)
-        own = declared[name].depends
-        needed = inputs[owner] if own is None else [f"{owner}.{each}" for each in own]
-        return tuple(dict.fromkeys(source for each in needed for source in reach(each)))
+    def reach(name: str) -> frozenset[str]:
+        owner, _, variable = name.partition(".")
+        if name in system.wires:
+            return reach(system.wires[name])
+        if name in system.drives or variable == TIME:
+            return frozenset({TIME})
+        if names[name] == "input":
+            return frozenset({name})
+        needed = needs[owner][variable] if names[name] == "output" else ()
+        return frozenset[str]().union(*(reach(f"{owner}.{each}") for each in needed))
 
     return reach
 

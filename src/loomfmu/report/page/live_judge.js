@@ -80,6 +80,6 @@ loomfmu.judge = ({ fields, signals, coarseness, proven }, length, wasm) => {
   /* A function from a claim to its verdict; `own` says that the values are those of the scene. */
   return (run, own) => {
     take(run);
-    return claim => claim.unlike ? left("the page would judge it unlike the native run") : judge(run, claim, own);
+    return claim => claim.not_live ? left(claim.not_live) : claim.unlike ? left("the page would judge it unlike the native run") : judge(run, claim, own);
   };
 };

@@ -9,7 +9,7 @@ from ...cosim.claims.conditions import Condition, Sometime
 from ...errors import LoomfmuError
 from ...files import starts_with, write_file
 from ...fmi import source
-from . import FORMAT
+from . import FORMAT, MOST_REVOLUTIONS
 from .cover import Cover
 from .proofs import Proofs
 
@@ -23,7 +23,7 @@ def write(proofs: Proofs, path: Path, inputs: Sequence[Path] = (), overwrite: bo
     """
     names = [proof.claim for proof in proofs.claims]
     certified = [each for each in proofs.claims if each and each.components and names.count(each.claim) == 1]
-    if not certified:
+    if not certified or proofs.scene.periods > MOST_REVOLUTIONS:
         raise LoomfmuError(f"{path} is not written: no claim that a certificate can confirm is proven")
     scene = proofs.scene
     told: dict[str, Any] = {

@@ -20,9 +20,8 @@ from ...cosim.scenes.scene import Scene
 from ...declaring.variables import MOTION, TIME, Component, variables_of
 from ...fmi.native.slicing import settings_of
 from .enclosed import Enclosed
+from .sides import SHAFT, START, outputs_of
 from .spans import TINY, ULP, Floats, both, constant, minus, plus, times
-
-SHAFT, START = "shaft", "start_angle"
 
 
 @dataclass(frozen=True)
@@ -128,7 +127,7 @@ class Chain:
     """
 
     def __init__(self, scene: Scene, signals: Sequence[str], sides: Mapping[tuple[str, str], int]):
-        needed = prune(scene, [each for each in signals if _is_output(scene, each)], keep_shafts=True)
+        needed = prune(scene, outputs_of(scene, signals), keep_shafts=True)
         if SHAFT not in scene.instances:
             raise Unprovable("the scene has no shaft")
         shaft = scene.instances[SHAFT]
@@ -141,7 +140,6 @@ class Chain:
         if lagged:
             raise Unprovable(f"{lagged[0]} closes a loop")
         self._tables = {place: Table(each.periods, each.values) for place, each in self._drives.items()}
-        self._sense = math.copysign(1.0, float(shaft.start("speed") or 0.0))
         read = {wire.source for wire in needed.scene.wires} | {tuple(each.split(".", 1)) for each in signals}
         self._placed = [
             self._place(
@@ -210,24 +208,18 @@ class Chain:
         time = Number.side(0, boxes)
         if self._scene.step is not None:
             return time
-        rate = Number.of(0.0, boxes).plus(
-            self.number(f"{SHAFT}.speed", {}, boxes), self._sense / (2.0 * math.pi)
-        )
-        return time.times(rate)
+        speed = self.number(f"{SHAFT}.speed", {}, boxes)
+        sense = math.copysign(1.0, float(speed.values.flat[0]))  # the same in all boxes
+        return time.times(Number.of(0.0, boxes).plus(speed, sense / (2.0 * math.pi)))
 
     def number(self, name: str, found: Mapping[str, Number], boxes: Floats) -> Number:
         """Return a signal, or a parameter, over boxes."""
         if name in found:
             return found[name]
         instance, _, variable = name.partition(".")
-        if (instance, variable) in self._sides:
-            return Number.side(self._sides[instance, variable], boxes)
+        if side := self._sides.get((instance, variable)):  # side 0 is no parameter of the scene
+            return Number.side(side, boxes)
         return Number.of(float(self._scene.instances[instance].start(variable) or 0.0), boxes)
-
-
-def _is_output(scene: Scene, name: str) -> bool:
-    instance, _, variable = name.partition(".")
-    return scene.instances[instance].fmu.ports[variable].causality == "output"
 
 
 def _checked(instance: Instance) -> type[Component]:

@@ -37,20 +37,21 @@ from ...cosim.reading import requested
 from ...cosim.scenes import scene as scenes
 from ...cosim.scenes.graph import step_order
 from ...cosim.scenes.instances import Instance
-from ...cosim.scenes.scene import Scene, differing
+from ...cosim.scenes.scene import Scene
 from ...cosim.scenes.settings import texts_in, toml
 from ...declaring.variables import MOTION, variables_of
-from ...display.printed import rounded
+from ...display.progress import Advance
+from ...display.progress import progress as progress_bar
 from ...errors import LoomfmuError, shown
 from ...files import text_of
 from ...fmi import source
 from ...fmi.native.slicing import settings_of, sliced
 from ...fmi.native.translate import ENTRIES
 from ...sweeps.varied import Varied, varied
-from . import FORMAT
+from . import FORMAT, MOST_REVOLUTIONS
 from .intervals import ALL, MATH, Ends, Interval, Unknown, floor, joined, number
+from .sides import SHAFT, START, check_side, outputs_of
 
-SHAFT, START = "shaft", "start_angle"
 FINE = 0.02  # [rad]: so narrow must a box be that a mechanism is in one of its phases
 FINER = 8  # bisections of a box that this arithmetic, which is wider, may need on top
 Box = tuple[Ends, ...]
@@ -62,10 +63,14 @@ class Refused(LoomfmuError):
     """A certificate that proves less than it says."""
 
 
-def check(path: str | Path) -> list[str]:
-    """Return a line for each claim that a certificate proves, confirmed. Raises Refused, a LoomfmuError."""
+def check(path: str | Path, *, progress: bool = False) -> list[str]:
+    """Return a line for each claim that a certificate proves, confirmed. Raises Refused, a LoomfmuError.
+
+    `progress` shows how many of its boxes are confirmed, which takes some 10 ms each.
+    """
+    text = text_of(Path(path))
     try:
-        told = json.loads(text_of(Path(path)))
+        told = json.loads(text)
         if told["format"] != FORMAT:
             raise Refused(f"format = {told['format']!r} must be {FORMAT!r}")
         _check_harmless(told)
@@ -73,23 +78,18 @@ def check(path: str | Path) -> list[str]:
             for name, text in told["texts"].items():
                 (Path(folder) / name).parent.mkdir(parents=True, exist_ok=True)
                 (Path(folder) / name).write_text(text, encoding="utf-8")
-            return _Check(told, folder).lines
-    except (Refused, Unprovable) as error:
+            trees = (tree for claim in told["claims"] for covers in claim["conditions"] for tree in covers)
+            with progress_bar("boxes", sum(map(len, trees)), wanted=progress) as advance:
+                return _Check(told, folder, advance).lines
+    except (LoomfmuError, Unprovable) as error:
         raise Refused(f"{path}: {error}") from None
-    except (
-        ValueError,
-        KeyError,
-        TypeError,
-        IndexError,
-        AttributeError,
-        RecursionError,
-        OverflowError,
-    ):
+    except (ArithmeticError, LookupError, TypeError, ValueError, AttributeError, OSError, RecursionError):
         raise LoomfmuError(f"{path} is not a certificate that `loomfmu prove --certificate` wrote") from None
 
 
 class _Check:
-    def __init__(self, told: dict[str, Any], folder: str):
+    def __init__(self, told: dict[str, Any], folder: str, advance: Advance):
+        self._advance = advance
         scene = scenes.parse(told["scene"], told["name"], told["overrides"], folder)
         self._asked = requested(scene, None, "native")
         self._scene = scene = self._asked.scene
@@ -100,21 +100,19 @@ class _Check:
         self._varied: list[Varied] = []
         for place, (key, ends) in enumerate(zip(told["over"], self._ends, strict=True), 1):
             about = varied(scene, key)
+            check_side(scene, about, ends)
             targets = {tuple(each.split(".")): place for each in about.targets}
-            if not targets or about.kind != "Real" or self._sides.keys() & targets:
-                raise Refused(f"{key} cannot vary in a proof, or varies twice")
-            for end in ends:
-                setting = {key: about.setting(about.read(about.setting(end)))}
-                moved = requested(scene, {**scene.overrides, **setting}, "native").scene
-                for name, variable, _before, _after in differing(scene, moved):
-                    if (name, variable) not in targets:
-                        raise Refused(f"{name}.{variable} changes with {key}")
+            if self._sides.keys() & targets:
+                raise Refused(f"{key} varies twice")
             self._sides |= targets
             self._varied.append(about)
         self._equations = told["equations"]
-        within = f" of {scene.periods:g} revolution{'s' * (scene.periods != 1)}"
+        within = f" of {scene.periods:.15g} revolution{'s' * (scene.periods != 1)}"
         for about, (low, high) in zip(self._varied, self._ends, strict=True):
-            within += f", {about.key} from {_inwards(about, low, True)} to {_inwards(about, high, False)}"
+            first, last = (units.exact(end, about.display) for end in (low, high))
+            within += f", {about.key} from {first} to {last}" + f" {about.shown_unit}" * (
+                about.shown_unit != "1"
+            )
         names = [name_of(table) for table in scene.claims]
         self.lines: list[str] = []
         if not told["claims"] or any(names.count(claim["name"]) != 1 for claim in told["claims"]):
@@ -137,26 +135,30 @@ class _Check:
         start = float(self._scene.instances[SHAFT].start(START) or 0.0)
         place = self._sides.get((SHAFT, "speed"))
         speed = float(self._scene.instances[SHAFT].start("speed") or 0.0)
-        slowest = speed if place is None else self._ends[place - 1][0]
-        if slowest <= 0.0 or self._scene.step is not None:
-            raise Refused("only forward runs by revolutions can be confirmed")
-        last = start + 2.0 * math.pi * self._scene.periods
+        slow, fast = (speed, speed) if place is None else self._ends[place - 1]
+        if slow <= 0.0 <= fast or self._scene.step is not None:
+            raise Refused("only runs by revolutions, and at a speed that is not 0, can be confirmed")
+        if self._scene.periods > MOST_REVOLUTIONS:
+            raise Refused(f"more than {MOST_REVOLUTIONS} revolutions cannot be confirmed")
+        turned = 2.0 * math.pi * self._scene.periods
+        run = (start, start + turned) if slow > 0.0 else (start - turned, start)
         if isinstance(condition, Spans):
             (tree,) = covers
-            lasting = partial(_spans_last, chain, condition, (start, last))
-            _confirm(name, self._text, tuple(self._ends), iter(tree), lasting, lambda _box, _faces: False)
+            lasting = partial(_spans_last, chain, condition, run)
+            codes = self._codes(tree)
+            _confirm(name, self._text, tuple(self._ends), codes, lasting, lambda _box, _faces: False)
             return
         scale = [FINE, *(high - low for low, high in self._ends)]
         holds, rises = (
             partial(_all_over, scale, partial(each, chain, condition.forms)) for each in (_holds, _rises)
         )
-        ranges = condition.ranges(start, last)
+        ranges = condition.ranges(*run)
         if len(ranges) != len(covers):
             raise Refused(f"{name}: {len(covers)} ranges of the shaft angle, not {len(ranges)}")
-        for (low, high), codes in zip(ranges, covers, strict=True):
-            tree = iter(codes)
+        for (low, high), cover in zip(ranges, covers, strict=True):
+            tree = self._codes(cover)
             if isinstance(condition, Sometime):
-                angle = float.fromhex(next(tree))
+                angle = float.fromhex(next(tree, ""))
                 if not low <= angle <= high:
                     at, first, end = (math.degrees(each) for each in (angle, low, high))
                     raise Refused(f"{name}: {at:.6g} deg is not within {first:.6g} to {end:.6g} deg")
@@ -170,14 +172,11 @@ class _Check:
         values = zip(self._varied, ends, strict=True)
         return ", ".join([*shown, *(f"{v.key} from {v.show(a)} to {v.show(b)}" for v, (a, b) in values)])
 
-
-def _inwards(about: Varied, end: float, up: bool) -> str:
-    """An end of a range as people read it; if it has more than seven digits, rounded into the range."""
-    text = about.show(end)
-    if about.read(text) == end or about.display not in units.UNITS:
-        return text
-    unit = "" if about.display == "1" else f" {about.display}"
-    return rounded(end / units.unit(about.display).factor, up) + unit
+    def _codes(self, tree: Sequence[Any]) -> Iterator[Any]:
+        """Yield what a tree says, and count it."""
+        for code in tree:
+            self._advance(1)
+            yield code
 
 
 def _check_harmless(told: dict[str, Any]) -> None:
@@ -305,12 +304,7 @@ class _Mechanisms:
 
     def __init__(self, scene: Scene, names: Sequence[str], sides: dict[Any, int], equations: dict[str, str]):
         self._scene, self._sides = scene, sides
-        outputs = [
-            n
-            for n in names
-            if scene.instances[n.split(".")[0]].fmu.ports[n.split(".")[1]].causality == "output"
-        ]
-        needed = prune(scene, outputs, keep_shafts=True).scene
+        needed = prune(scene, outputs_of(scene, names), keep_shafts=True).scene
         order, lagged = step_order(needed.instances, needed.wires)
         if lagged or needed.drives:
             raise Refused("the scene has a loop or a table of inputs")
@@ -352,13 +346,13 @@ class _Mechanisms:
             time = number(0.0) if name == SHAFT else Interval(ALL, [ALL] * len(box))
             place = joined(partial(_started, component, module, wanted, warnings))
             given = (
-                start | {variable: known[source] for variable, source in (wires | sides).items()}
+                start | {variable: known[source] for variable, source in (sides | wires).items()}
                 for known in (found, middle)
             )
             try:
                 wide, here = (place(each, time) for each in given)
-            except (TypeError, NameError) as error:
-                raise Refused(f"{name} cannot be confirmed: {error}") from None
+            except (TypeError, NameError):
+                raise Refused(f"{name} computes with what the check has no intervals for") from None
             for variable, a, b in zip(wanted, wide, here, strict=True):
                 middle[f"{name}.{variable}"] = b
                 found[f"{name}.{variable}"] = _narrowed(a, b, box)
@@ -369,8 +363,9 @@ class _Mechanisms:
         total = number(form.constant)
         for share, name in form.terms:
             instance, variable = name.split(".")
-            start = self._scene.instances[instance].start(variable) if name not in found else 0.0
-            total = total + share * found.get(name, number(float(start or 0.0)))
+            fixed = name not in found or name == f"{SHAFT}.{START}"  # that of the scene, not of the box
+            start = self._scene.instances[instance].start(variable) if fixed else 0.0
+            total = total + share * (number(float(start or 0.0)) if fixed else found[name])
         return total
 
 
@@ -418,7 +413,27 @@ def _module(component: Any, wanted: Sequence[str], instance: Instance) -> dict[s
     space: dict[str, Any] = {"number": number, **constants, **MATH}
     tree.body = [node for node in tree.body if not isinstance(node, ast.ImportFrom)]
     exec(compile(ast.fix_missing_locations(_Numbers().visit(tree)), component.__name__, "exec"), space)
-    for node in tree.body:
-        if isinstance(node, ast.FunctionDef):
-            space[node.name] = joined(space[node.name])
+    functions = [node for node in tree.body if isinstance(node, ast.FunctionDef)]
+    for name in {node.name for node in functions} - _writers(functions):
+        space[name] = joined(space[name])
     return space
+
+
+def _writers(functions: Sequence[ast.FunctionDef]) -> set[str]:
+    """The functions that write to a list that they are given, themselves or through others.
+
+    Their ways are those of their callers: each way needs a list of its own.
+    """
+    found, known = set[str](), -1
+    while len(found) > known:
+        known = len(found)
+        for function in functions:
+            given = {each.arg for each in function.args.args}
+            for node in ast.walk(function):
+                match node:
+                    case ast.Subscript(value=ast.Name(id=name), ctx=ast.Store()) if name in given:
+                        found.add(function.name)
+                    case ast.Call(func=ast.Name(id=called), args=args) if called in found:
+                        if given & {each.id for each in args if isinstance(each, ast.Name)}:
+                            found.add(function.name)
+    return found

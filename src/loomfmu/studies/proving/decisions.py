@@ -13,6 +13,7 @@ from .chain import Chain, Number
 from .cover import Decision
 from .spans import Floats
 
+SURE = 1e-6  # of the steepest slope by a side
 TRIED = 4097  # angles at which something may happen
 
 
@@ -73,9 +74,10 @@ def decision(proven: NDArray[np.bool_], slopes: Floats, scale: Floats, boxes: Fl
     bisect a narrow side again leaves the slopes as they are.
     """
     faces = boxes.copy()
-    # along a side on which it does not depend, other arithmetic may find a slope of either sign
-    depends = (slopes != 0.0).any(axis=-1)
-    rises, falls = depends & (slopes[..., 0] >= 0.0), depends & (slopes[..., 1] <= 0.0)
+    # where a slope is about 0, the arithmetic of the check may find one of either sign
+    surely = SURE * np.abs(slopes).max(axis=-1)
+    rises = (surely > 0.0) & (slopes[..., 0] >= surely)
+    falls = (surely > 0.0) & (slopes[..., 1] <= -surely)
     faces[..., 1] = np.where(rises, boxes[..., 0], boxes[..., 1])
     faces[..., 0] = np.where(falls & ~rises, boxes[..., 1], boxes[..., 0])
     widths = faces[..., 1] - faces[..., 0]

@@ -26,6 +26,13 @@ def _outwards(low: float, high: float) -> Ends:
     return (math.nextafter(low, -math.inf), math.nextafter(high, math.inf)) if low <= high else ALL
 
 
+def _sum(a: Ends, b: Ends) -> Ends:
+    """Add bounds: a sum that is 0 is exact."""
+    low, high = a[0] + b[0], a[1] + b[1]
+    found = _outwards(low, high)
+    return (low if low == 0.0 else found[0]), (high if high == 0.0 else found[1])
+
+
 def _times(x: float, y: float) -> float:
     """Multiply bounds: an infinite one is no value, and a product of others is not 0."""
     if not x or not y:
@@ -186,7 +193,7 @@ class Interval:
         return _of(
             (self, (1.0, 1.0)),
             (b, (1.0, 1.0)),
-            ends=_outwards(self.ends[0] + b.ends[0], self.ends[1] + b.ends[1]),
+            ends=_sum(self.ends, b.ends),
         )
 
     def __neg__(self) -> "Interval":
@@ -264,11 +271,11 @@ def _of(*parts: tuple[Interval, Ends], ends: Ends, not_zero: bool = False) -> In
         return Interval(ends, None, not_zero=not_zero)
     slopes = []
     for side in range(Interval.sides):
-        low = high = 0.0
+        total = 0.0, 0.0
         for own, by in moving:
-            a, b = _product(own[side], by)
-            low, high = _outwards(low + a, high + b) if (a, b) != (0.0, 0.0) else (low, high)
-        slopes.append((low, high))
+            part = _product(own[side], by)
+            total = _sum(total, part) if part != (0.0, 0.0) else total
+        slopes.append(total)
     return Interval(ends, slopes, not_zero=not_zero)
 
 

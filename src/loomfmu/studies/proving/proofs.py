@@ -53,7 +53,7 @@ class Proofs:
     @property
     def sides(self) -> list[str]:
         """Return what varies and its range, in words."""
-        return [f"{span.key} from {span.text}" for span in self.over]
+        return [f"{span.key} from {span.exact}" for span in self.over]  # beyond it may be false
 
     @property
     def remarks(self) -> dict[int, str]:

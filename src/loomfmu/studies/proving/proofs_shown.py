@@ -18,9 +18,10 @@ HEADINGS = ("", "claim", "how")
 def show(found: Proofs) -> None:
     """Print what was proven of every claim."""
     over = ", ".join(found.sides)
-    revolutions = f"{found.scene.periods:g} revolution{'s' * (found.scene.periods != 1)}"
+    duration, by_revolutions = f"{found.scene.periods:.15g}", found.scene.step is None
+    duration += f" revolution{'s' * (found.scene.periods != 1)}" if by_revolutions else " s"
     say(
-        f"{found.scene.title}: for all shaft angles of {revolutions}"
+        f"{found.scene.title}: for all shaft angles of {duration}"
         + (f" and all values of {over}" if over else "")
     )
     table = [(proof.status, proof.claim, _how(proof)) for proof in found.claims]

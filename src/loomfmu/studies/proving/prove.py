@@ -7,13 +7,13 @@ from typing import Any
 from ...cosim.claims.claims import name_of
 from ...cosim.prepared import Prepared
 from ...cosim.reading import requested
-from ...cosim.scenes.scene import Scene, differing
+from ...cosim.scenes.scene import Scene
 from ...errors import LoomfmuError, shown
 from ..span import Span, set_twice, span_of, warnings_of
-from .chain import SHAFT, START
 from .enclosed import LARGEST_BOX
 from .proofs import Proofs
 from .search import MOST, Search
+from .sides import check_side
 
 
 def prove(
@@ -66,17 +66,4 @@ def check_sides(scene: Scene, sides: Sequence[Span]) -> None:
     if twice := set_twice(sides):
         raise LoomfmuError(f"{twice[0].key} and {twice[1].key} both set {twice[2]}")
     for side in sides:
-        if f"{SHAFT}.{START}" in side.varied.targets:
-            raise LoomfmuError(f"{side.key} cannot vary in a proof: all shaft angles are proven")
-        _check_follows(scene, side)
-
-
-def _check_follows(scene: Scene, span: Span) -> None:
-    """Refuse what is no number of a parameter, and a value that others follow in a way that is not known."""
-    if span.varied.kind != "Real" or not span.varied.targets:
-        raise LoomfmuError(f"{span.key} cannot vary in a proof: it is not the value of a parameter")
-    for value in (span.low, span.high):
-        moved = requested(scene, {**scene.overrides, **span.setting(value)}, "native").scene
-        for name, variable, _before, _after in differing(scene, moved):
-            if f"{name}.{variable}" not in span.varied.targets:
-                raise LoomfmuError(f"{span.key} cannot vary in a proof: {name}.{variable} changes with it")
+        check_side(scene, side.varied, (side.low, side.high))

@@ -14,10 +14,11 @@ from ...cosim.prepared import Prepared
 from ...cosim.reading import requested
 from ...cosim.results import Evaluation
 from ..span import Span
-from .chain import SHAFT, START, Chain
+from .chain import Chain
 from .cover import Cover, cover
 from .decisions import Lowest, decide_any, decide_spans, likely
 from .proofs import IMPOSSIBLE, OPEN, PROVEN, REFUTED, Proof
+from .sides import SHAFT, START
 from .spans import Ends, Floats
 
 MOST = 200_000  # boxes for one condition

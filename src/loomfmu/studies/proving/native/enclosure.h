@@ -133,6 +133,9 @@ static inline span operator*(span a, span b)
 {
     const double p[4] = {multiplied(a.low, b.low), multiplied(a.low, b.high), multiplied(a.high, b.low),
                          multiplied(a.high, b.high)};
+    if (isnan(p[0] + p[1] + p[2] + p[3])) {
+        return {-INFINITY, INFINITY};
+    }
     double low = p[0], high = p[0];
     for (int i = 1; i < 4; i++) {
         low = p[i] < low ? p[i] : low;
@@ -148,7 +151,7 @@ static inline span squared(span a)
 {
     const span all = a * a;
     const double least = a.low > 0.0 ? a.low * a.low : a.high < 0.0 ? a.high * a.high : 0.0;
-    return {least > 0.0 ? below(least) : 0.0, all.high};
+    return spanned(least > 0.0 ? fmax(below(least), 0.0) : 0.0, all.high);
 }
 
 /* One over a number; `not_zero` where that is known although a bound is 0. */

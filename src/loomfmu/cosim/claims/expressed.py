@@ -1,0 +1,216 @@
+"""A run in which an expression is a signal, too: its samples, its rates, and how far they may be off.
+
+Where the rates of all signals are known, so are those of their sums, products and quotients. Between the
+samples an expression thus follows a curve of its own, as a recorded signal does.
+"""
+
+from collections.abc import Iterator, Mapping
+from functools import reduce
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import LoomfmuError, listed
+from ...traces import Channel, Column, Signals
+from ...traces.signals import Floats
+from ...traces.verdict import place_text
+from .expressions import Expression, Node, known_as
+
+Jet = list[Floats]  # values, then rates and second rates as far as they are known
+RATES = "rate of ", "second rate of "
+
+
+class Expressed(Signals):
+    """A run with one expression more, under its text. Raises LoomfmuError where it divides by 0."""
+
+    def __init__(self, run: Signals, expression: Expression):
+        self._run, self._node = run, expression.node
+        self.name, self.cut_short = run.name, run.cut_short
+        self.wires, self.fmus, self.own_speeds = run.wires, run.fmus, run.own_speeds
+        values, *rates = self._jet(self._node)
+        names = [str(expression), *(f"{each}{expression}" for each in RATES)]
+        self._made = dict(zip(names, [values, *rates], strict=False))
+        self._rates = dict(pairwise(self._made))
+        self._beside = self._others(names[0])
+        self._unit, self._display = expression.unit, self._shown_in(expression)
+
+    # ---- the expression
+
+    def _jet(self, node: Node) -> Jet:
+        """Return the samples of a part of the expression, in SI."""
+        if (number := node.constant) is not None:
+            return [np.full(len(self.time), number), *2 * [np.zeros(len(self.time))]]
+        if node.kind == "signal":
+            return [node.factor * each for each in self._recorded_jet(node.text)]
+        parts = [self._jet(part) for part in node.parts]
+        if node.kind == "neg":
+            return [-each for each in parts[0]]
+        if node.kind == "+":
+            return [sum(each[1:], each[0]) for each in zip(*parts, strict=False)]
+        if node.kind == "*":
+            return reduce(_product, parts)
+        if node.kind == "/":
+            return self._quotient(node, *parts)
+        if node.kind == "abs":
+            return [np.abs(parts[0][0])]
+        return [reduce(np.minimum if node.kind == "min" else np.maximum, [each[0] for each in parts])]
+
+    def _recorded_jet(self, signal: str) -> Jet:
+        """Return the samples of a signal with its rates; those of what stays the same are 0."""
+        found, name = [np.asarray(self._run[signal], dtype=float)], self._run.rate(signal)
+        while name and len(found) <= len(RATES):
+            found.append(np.asarray(self._run[name], dtype=float))
+            name = self._run.rate(name)
+        steady = self._run.beside(signal, "lowest") == self._run.beside(signal, "highest") == signal
+        if len(found) == 1 and steady and np.all(found[0] == found[0][0]):
+            found += 2 * [np.zeros(len(self.time))]
+        return found
+
+    def _quotient(self, node: Node, above: Jet, below: Jet) -> Jet:
+        """Return a quotient; it is known only at the samples where its denominator may pass 0 in between."""
+        values = below[0]
+        passes = (values == 0.0) | (np.sign(values) == -np.sign(values[0]))
+        if np.any(passes):
+            place = int(np.argmax(passes))
+            angle, turn = self.shaft_angle[place], 2.0 * np.pi
+            revolution = int(angle // turn) + 1 if "shaft.angle" in self._run else None
+            where = place_text(float(self.time[place]), float(angle % turn), revolution)
+            raise LoomfmuError(
+                f"{self.name}: the expression divides by {node.parts[1].text}, which is or passes 0 at"
+                f" {where}"
+            )
+        found = [above[0] / values]
+        if len(above) > 1 and len(below) > 1 and not _may_pass_zero(self.time, below):
+            found.append((above[1] - found[0] * below[1]) / values)
+            if len(above) > 2 and len(below) > 2:
+                found.append((above[2] - 2.0 * found[1] * below[1] - found[0] * below[2]) / values)
+        return found
+
+    def _off(self, node: Node, off: Mapping[str, Floats]) -> tuple[Floats, Floats]:
+        """Return the samples of a part, and how far they are off if signals are off by so much, in SI."""
+        if node.kind == "signal":
+            return node.factor * np.asarray(self._run[node.text], dtype=float), node.factor * off[node.text]
+        values = self._jet(node)[0]
+        if node.constant is not None:
+            return values, np.zeros(len(values))
+        parts = [self._off(part, off) for part in node.parts]
+        errors = [error for _values, error in parts]
+        if node.kind == "*":
+            (one, here), (other, there) = parts
+            return values, np.abs(one) * there + np.abs(other) * here + here * there
+        if node.kind == "/":
+            left = np.abs(parts[1][0]) - errors[1]
+            known = (errors[0] + np.abs(values) * errors[1]) / np.where(left > 0.0, left, 1.0)
+            return values, np.where(left > 0.0, known, np.inf)
+        if node.kind == "+":
+            return values, errors[0] + errors[1]
+        return values, np.maximum.reduce(errors)
+
+    def noise(self, share: float, scatter: float) -> float:
+        """Return how far it is off if its signals are by that share, and by `scatter` times their changes."""
+        off = {}
+        for name in self._node.signals:
+            values = np.asarray(self._run[name], dtype=float)
+            off[name] = share * np.abs(values) + scatter * np.abs(values - values[0])
+        return float(np.max(self._off(self._node, off)[1]))
+
+    def _others(self, name: str) -> dict[str, str]:
+        """Add what says when the expression is known and how far it is off; return these by their roles."""
+        signals, found = self._node.signals, dict[str, str]()
+        flags = list(dict.fromkeys(filter(None, map(self._run.validity, signals))))
+        errors = {each: self._run.error(each) for each in signals}
+        if len(flags) == 1:
+            found["valid_if"] = flags[0]
+        elif flags:
+            found["valid_if"] = listed(flags)
+            self._made[found["valid_if"]] = np.minimum.reduce([self._run[each] for each in flags])
+        if any(errors.values()):
+            zero = np.zeros(len(self.time))
+            off = {each: np.abs(self._run[other]) if other else zero for each, other in errors.items()}
+            found["error"] = f"error of {name}"
+            self._made[found["error"]] = self._off(self._node, off)[1]
+        return found
+
+    def _shown_in(self, expression: Expression) -> str:
+        """Return the unit that people read it in: that of the first signal of its kind."""
+        dimension = known_as(expression.node.dimension)
+        alike = (each for each in _all_signals(expression.node) if each.dimension == dimension)
+        return next((self._run.display(each.text) for each in alike), expression.unit)
+
+    # ---- as a run
+
+    @property
+    def shared(self) -> dict[Any, Any]:
+        """Data that the claims on the run share."""
+        return self._run.shared
+
+    @property
+    def time(self) -> Floats:
+        """Time of the samples [s]."""
+        return self._run.time
+
+    @property
+    def shaft_angle(self) -> Floats:
+        """Shaft angle of the samples, not wrapped [rad]."""
+        return self._run.shaft_angle
+
+    def __getitem__(self, signal: str) -> NDArray[Any]:
+        return self._made[signal] if signal in self._made else self._run[signal]
+
+    def __contains__(self, signal: object) -> bool:
+        return signal in self._made or signal in self._run
+
+    def __iter__(self) -> Iterator[str]:
+        return iter([*self._run, *self._made])
+
+    def channel(self, signal: str) -> Channel:
+        """The channel of a signal, or of the expression. Raises LoomfmuError for one that is not there."""
+        if signal not in self._made:
+            return self._run.channel(signal)
+        return Channel("", signal, self._unit, self._display, signal)
+
+    def columns(self, signals: Any) -> list[Column]:
+        """The time of the samples, then the values of some signals."""
+        time, *_none = self._run.columns([])
+        return [time, *(self._column(each) for each in signals)]
+
+    def _column(self, signal: str) -> Column:
+        made = self._made.get(signal)
+        return self._run.columns([signal])[1] if made is None else Column.of(made)
+
+    def rate(self, signal: str) -> str | None:
+        """The signal that is this one's time derivative, if there is one."""
+        return self._rates.get(signal) if signal in self._made else self._run.rate(signal)
+
+    def beside(self, signal: str, role: str) -> str | None:
+        """The signal that says more of this one in a role of `Beside`, if there is one."""
+        if signal not in self._made:
+            return self._run.beside(signal, role)
+        return self._beside.get(role) if signal == next(iter(self._made)) else None
+
+    def parameter(self, signal: str) -> float:
+        """A parameter of an instance as it was set."""
+        return self._run.parameter(signal)
+
+
+def _product(one: Jet, other: Jet) -> Jet:
+    found = [one[0] * other[0]]
+    if min(len(one), len(other)) > 1:
+        found.append(one[1] * other[0] + one[0] * other[1])
+    if min(len(one), len(other)) > 2:
+        found.append(one[2] * other[0] + 2.0 * one[1] * other[1] + one[0] * other[2])
+    return found
+
+
+def _may_pass_zero(time: Floats, jet: Jet) -> bool:
+    """Return whether a cubic that joins the samples may reach 0: its Bernstein points enclose it."""
+    third, (values, rates, *_more) = np.diff(time) / 3.0, jet
+    points = np.array([values[:-1], values[:-1] + third * rates[:-1], values[1:] - third * rates[1:]])
+    return bool(np.any(np.sign(points) != np.sign(values[0])))
+
+
+def _all_signals(node: Node) -> list[Node]:
+    own = [node] if node.kind == "signal" else []
+    return [*own, *(each for part in node.parts for each in _all_signals(part))]

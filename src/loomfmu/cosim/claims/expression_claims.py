@@ -1,0 +1,104 @@
+"""Claims on expressions of signals: each is judged as a signal whose curve follows from theirs."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...traces import Signals, Verdict
+from .bounded import Above, Below, Bounded
+from .claim import EVERY_STEP
+from .conditions import Always, Condition, Sum, Unprovable, present
+from .expressed import Expressed
+from .expressions import Expression
+from .judging import Question, run_of
+from .movers import Wired
+
+
+class _OfExpression(Bounded, kind=False):
+    """An expression stays on one side of a bound.
+
+    An `abs`, `max` or `min` that the bound can be taken into gives several smooth expressions, the cases,
+    which must all keep it. With any other one the values between the samples are not known.
+    """
+
+    grid = EVERY_STEP
+    not_live = "a page judges signals, not expressions"
+
+    @property
+    def _expression(self) -> Expression:
+        assert isinstance(self.signal, Expression), "claims on plain signals are of other classes"
+        return self.signal
+
+    def signals(self, scene: Wired) -> list[str]:
+        return list(self._expression.node.signals)
+
+    def unit_in(self, run: Wired) -> str:
+        return self._expression.unit
+
+    def question(self, trace: Signals) -> Question:
+        return super().question(Expressed(trace, self._expression))
+
+    @property
+    def _cases(self) -> list["_OfExpression"]:
+        """Claims on smooth expressions that hold together where this holds."""
+        if self.at_samples:
+            return [self]
+        return [replace(self, signal=each) for each in self._expression.cases(self.sense)]
+
+    def _alone(self, trace: Signals) -> Verdict:
+        run = Expressed(trace, self._expression)
+        return run_of(trace).verdict(run, super().question(run), self.name)
+
+    def _worst(self, trace: Signals) -> tuple["_OfExpression", Verdict]:
+        """Return the case with the worst value; if this holds, one that does not, if there is one."""
+        judged = [(case, case._alone(trace)) for case in self._cases]
+        judged.sort(key=lambda each: (not np.isnan(each[1].worst), self.sense * each[1].worst))
+        failing = [each for each in judged if not each[1].holds]
+        return judged[0] if judged[0] in failing or not failing else failing[0]
+
+    def judge(self, trace: Signals) -> Verdict:
+        return replace(self._worst(trace)[1], signal=str(self.signal))
+
+    def settled(
+        self, trace: Signals, verdict: Verdict, spread: float, share: float, scatter: float
+    ) -> Verdict:
+        case = self._worst(trace)[0]
+        run = Expressed(trace, case._expression)
+        asked, own = Bounded.question(case, run), replace(verdict, signal=case.signal)
+        noise = run.noise(share, scatter)  # the difference of two values is no surer than these
+        found = run_of(trace).settled(run, asked, own, spread, noise, share, 0.0)
+        return replace(found, signal=verdict.signal)
+
+    def left_by_model(self, trace: Signals, verdict: Verdict) -> float:
+        case = self._worst(trace)[0]
+        run = Expressed(trace, case._expression)
+        own = replace(verdict, signal=case.signal)
+        return run_of(trace).model_error(run, Bounded.question(case, run), own)
+
+    def conditions(self, run: Wired) -> tuple[Condition, ...]:
+        return tuple(case._condition(run) for case in self._cases)
+
+    def _condition(self, run: Wired) -> Condition:
+        """Return what must be so at every shaft angle, for a sum. Raises Unprovable for anything else."""
+        linear = self._expression.node.linear()
+        if linear is None:
+            raise Unprovable("it is on an expression that is not a sum of shares of signals")
+        shares, constant = linear
+        for name in shares:
+            if present(name, run, self.sense) != name:
+                raise Unprovable(f"{name} depends on the run so far")
+        terms = [(self.sense * share, name) for name, share in shares.items()]
+        if isinstance(self.bound, str):
+            return Always((Sum((*terms, (-self.sense, self.bound)), self.sense * constant),), self.window)
+        return Always((Sum(tuple(terms), self.sense * (constant - self.bound)),), self.window)
+
+
+class _AboveExpression(_OfExpression, Above, kind=False):
+    """An expression stays at or above a bound."""
+
+
+class _BelowExpression(_OfExpression, Below, kind=False):
+    """An expression stays at or below a bound."""
+
+
+of_expression: dict[str, type[_OfExpression]] = {"above": _AboveExpression, "below": _BelowExpression}
