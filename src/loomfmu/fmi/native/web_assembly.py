@@ -7,7 +7,7 @@ call of it, as one version of the compiler makes it; `make runtime` makes it ane
 import io
 import re
 import zipfile
-from importlib.metadata import version
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from ...files import replace_file
@@ -52,11 +52,19 @@ def web_assembly(source: str, code: dict[str, str]) -> bytes:
 def _linked(compiled: str, module: str, directory: Path) -> bool:
     """Link what is kept; return false if that is of another compiler, or lacks something."""
     with zipfile.ZipFile(KEPT) as archive:
-        if archive.comment.decode() != version(COMPILER):
+        if archive.comment.decode() != _compiler():
             return False
         archive.extractall(directory)
     first, second, third, last = PARTS
     return compiler.zig(directory, *LINK, "-o", module, first, second, third, compiled, last).returncode == 0
+
+
+def _compiler() -> str:
+    """The version of the compiler; empty if it was not installed as a package."""
+    try:
+        return version(COMPILER)
+    except PackageNotFoundError:
+        return ""
 
 
 def needing_all() -> dict[str, str]:
@@ -89,7 +97,7 @@ def made() -> bytes:
                 compiler.zig(directory, "ar", "rcsD", part, *members)
         file = io.BytesIO()
         with zipfile.ZipFile(file, "w") as archive:
-            archive.comment = version(COMPILER).encode()
+            archive.comment = _compiler().encode()
             for part in PARTS:
                 content = (directory / part).read_bytes()
                 archive.writestr(zipfile.ZipInfo(part), content, zipfile.ZIP_DEFLATED, 9)
