@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scene_texts import claim
+from scene_texts import claim, wires
 
 import loomfmu
 from loomfmu.cosim.claims.conditions import Condition, Sometime, Spans, Sum, names_of
@@ -60,6 +60,19 @@ def test_a_condition_holds_where_the_claim_does(bound: str, table: dict[str, Any
         verdicts.append(holds)
         assert _hold(conditions, chain) == holds
     assert verdicts[0] != verdicts[1]
+
+
+@pytest.mark.parametrize("fraction", [-5.0, 0.01, 5.0])
+def test_a_lift_far_beyond_an_end_of_the_stroke_is_near_none(fraction: float) -> None:
+    """It was proven to dwell where it stood at five strokes below the lower end."""
+    cut = {f"heald_1__lift_{each}": False for each in ("fraction", "rate", "acceleration")}
+    heald = (
+        f"[heald_1]\nfollow_lift = true\nlift_fraction = {fraction}\nlift_rate = 0\n[wires]\n{wires(**cut)}"
+    )
+    text = LOOM + heald + claim("dwell_contains", heald="heald_1", angles=["140 deg"], tolerance=0.05)
+    asked = requested(parse(text, "loom"), None, "native")
+    conditions = asked.claims[0].conditions(asked)
+    assert _hold(conditions, Chain(asked.scene, names_of(conditions), {})) == (fraction == 0.01)
 
 
 def _found(bound: str, table: dict[str, Any], value: float) -> tuple[bool, float, Any, Chain]:

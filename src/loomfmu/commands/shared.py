@@ -164,10 +164,8 @@ def proofs_of(scene: Any, over: Sequence[str], given: dict[str, Any] | None = No
 
     found = prove(scene, over=over, set=given)
     warn(doubt for span in found.over for doubt in span.doubts)
-    for span in found.over:
-        if not span.low <= span.value <= span.high:
-            own = f"{span.show(span.value)}, the scene's value"
-            raise LoomfmuError(f"--prove {span.key}: {own}, is outside the range from {span.text}")
+    if outside := found.outside:
+        raise LoomfmuError(f"--prove: the scene's {outside}")
     return found
 
 

@@ -30,6 +30,13 @@ class _Lifted(Claim, kind=False):
         lower = Sum(((tolerance, stroke), (-1.0, lift)))
         return lower, Sum(((1.0, lift), (tolerance - 1.0, stroke)))
 
+    def not_beyond(self, run: Wired, tolerance: float, angles: tuple[float, ...] = ()) -> tuple[Always, ...]:
+        """Return the conditions that the lift passes no end of the stroke by more than a share of it."""
+        lift, stroke = lift_of(self.heald, self.lifted_by, run), f"{self.heald}.stroke"
+        lowest = Sum(((tolerance, stroke), (1.0, lift)))
+        highest = Sum(((1.0 + tolerance, stroke), (-1.0, lift)))
+        return tuple(Always((each,), angles=angles) for each in (lowest, highest))
+
     def signals(self, scene: Wired) -> list[str]:
         check_lifted_by(self.lifted_by, dampers_of(scene))
         return list(dict.fromkeys((lift_of(self.heald, self.lifted_by, scene), *super().signals(scene))))
@@ -66,7 +73,8 @@ class Dwell(_Span):
         return self.asked(trace, "dwell", text, "lift", self.tolerance)
 
     def conditions(self, run: Wired) -> tuple[Condition, ...]:
-        return (Spans(self.ends(run, self.tolerance), self.at_least),)
+        spans = Spans(self.ends(run, self.tolerance), self.at_least)
+        return spans, *self.not_beyond(run, self.tolerance)
 
 
 class ClearShed(_Span):
@@ -111,4 +119,6 @@ class DwellContains(_Lifted):
         return Question("dwell_contains", [form], signals, [self.tolerance, stroke, *self.angles])
 
     def conditions(self, run: Wired) -> tuple[Condition, ...]:
-        return (Always(self.ends(run, self.tolerance), angles=tuple(self.angles)),)
+        angles = tuple(self.angles)
+        near = Always(self.ends(run, self.tolerance), angles=angles)
+        return near, *self.not_beyond(run, self.tolerance, angles)

@@ -65,7 +65,7 @@ def test_a_certificate_is_confirmed(told: dict[str, Any], tmp_path: Path) -> Non
 FORGED = [  # what is done to a certificate, and what is said of it
     (
         'told["scene"] = told["scene"].replace("revolutions = 2", "revolutions = 0.1", 1)\n'
-        'told["claims"] = [{"name": "transfer", "conditions": [[]]}]',
+        'told["claims"] = [{"name": "transfer", "conditions": [[], [], []]}]',
         "never reaches 140 deg",
     ),
     (

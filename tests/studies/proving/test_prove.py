@@ -266,7 +266,12 @@ def test_a_run_notes_what_is_proven(
     assert main(["run", str(tmp_path / "loom.toml"), "--prove", "shaft.speed=300..640"]) == 2
     said = capsys.readouterr().err
     assert "warning: shaft.speed = 300 is read as 300 rad/s" in said
-    assert "600 rev/min, the scene's value, is outside the range from 2864.789" in said
+    assert "the scene's shaft.speed = 600 rev/min is outside the range from 2864.789" in said
+    Path("loom.toml").write_text(
+        loom.text.replace("[[claims]]", '[heald_2]\nstroke = "120 mm"\n[[claims]]', 1)
+    )
+    assert main(["run", "loom.toml", "--prove", "heald.stroke=97mm..99mm"]) == 2
+    assert "the scene's heald_2.stroke = 120 mm is outside" in capsys.readouterr().err
     assert main(["run", str(tmp_path / "loom.toml"), "--prove", "shaft.speed=500rpm..800rpm"]) == 0
     said = " ".join(capsys.readouterr().out.split())
     assert "not proven for shaft.speed from 500 to 800 rev/min:" in said

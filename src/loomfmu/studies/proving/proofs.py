@@ -62,6 +62,17 @@ class Proofs:
         return {each.number: text for each in self.claims if each}
 
     @property
+    def outside(self) -> str:
+        """Return which value of the scene is not in its range, in words; an empty text if all are."""
+        for span in self.over:
+            for target in span.varied.targets:
+                owner, _, variable = target.partition(".")
+                value = float(self.scene.instances[owner].start(variable) or 0.0)
+                if not span.low <= value <= span.high:
+                    return f"{target} = {span.show(value)} is outside the range from {span.text}"
+        return ""
+
+    @property
     def ranges(self) -> dict[str, tuple[float, float]]:
         """Return the ends of the box in SI, by what varies."""
         return {span.key: (span.low, span.high) for span in self.over}
