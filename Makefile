@@ -18,7 +18,7 @@ VALIDATE := PYTHONPATH=tests $(BIN)/python -m validation
 # tests start hundreds of processes: each would compile the package again, which takes longer than most that it does
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test test-all coverage check stress attack verdicts bench docs site validation wheel pins clean
+.PHONY: demo test test-all coverage check stress attack verdicts bench docs site validation wheel runtime pins clean
 
 demo: .venv/installed
 	$(BIN)/loomfmu run sims/wl680_3600.toml
@@ -70,6 +70,10 @@ site: .venv/installed-for-tests
 # the report that compares everything published with what is computed
 validation: .venv/installed-for-tests
 	$(VALIDATE)
+
+# what modules of WebAssembly need of the C library, of the installed version of the compiler
+runtime: .venv/installed
+	$(BIN)/python -m loomfmu.fmi.native.web_assembly
 
 # a package that brings native FMUs and its other libraries for all platforms: who installs it needs no compiler;
 # built in a copy, since what an interrupted build leaves in src would be run

@@ -26,7 +26,7 @@ from loomfmu.traces import Trace, damage
 
 KEPT = user_cache_path("loomfmu-tests", appauthor=False)
 CODE = (".c", ".cpp", ".h")
-CALL = compiler._call  # of the compiler itself
+COMPILED_IN = compiler.compiled_in  # by the compiler itself
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -60,13 +60,13 @@ def compiled_once(fmu_cache: None) -> Iterator[None]:
     Each call takes over a second, even if the compiler has kept what it makes.
     """
 
-    def call(arguments: list[str], directory: Path, name: str) -> None:
+    def call(directory: Path, target: str, *arguments: str) -> None:
         compiler._required()
         code = sorted((each.name, each.read_bytes()) for each in directory.iterdir() if each.suffix in CODE)
-        key = hashlib.sha256(repr((arguments, code, stamp(COMPILER))).encode()).hexdigest()
+        key = hashlib.sha256(repr((target, arguments, code, stamp(COMPILER))).encode()).hexdigest()
         kept, output = KEPT / FMUS / key / "made", directory / arguments[arguments.index("-o") + 1]
         if not kept.is_file():
-            CALL(arguments, directory, name)
+            COMPILED_IN(directory, target, *arguments)
             kept.parent.mkdir(parents=True, exist_ok=True)
             part = kept.with_name(f"{os.getpid()}-{get_ident()}")
             part.write_bytes(output.read_bytes())
@@ -75,7 +75,7 @@ def compiled_once(fmu_cache: None) -> Iterator[None]:
         output.write_bytes(kept.read_bytes())
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(compiler, "_call", call)
+        patch.setattr(compiler, "compiled_in", call)
         yield
 
 

@@ -105,7 +105,7 @@ def test_the_file_of_an_fmu_is_described_too(tmp_path: Path, capsys: pytest.Capt
         assert main(["list", str(tmp_path / f"{name}.fmu")]) == 0
         lines = capsys.readouterr().out.splitlines()
         assert lines[0].startswith(f"{name}: FMI {3 if name == 'Motor3' else 2}.0, ")
-        assert "  mode = both_ways" in lines and "  w_free = 60.0 rad/s" in lines
+        assert "  mode = both_ways" in lines and "  w_free = 60 rad/s" in lines
     shaft = live_fmu.build(COMPONENTS["MainShaft"], tmp_path)
     assert main(["list", str(shaft)]) == 0
     assert "  speed = 400 rev/min  [from -9549.3 to 9549.3]" in capsys.readouterr().out.splitlines()

@@ -9,6 +9,7 @@ ROOT = Path(__file__).parents[2]
 HOME, TOUR = "README.md", "docs/tour.md"
 REFERENCE = ("docs/command_line.md",)  # beside what `reference` generates
 GUIDES = (
+    "docs/glossary.md",
     "docs/scenes.md", "docs/claims.md", "docs/how_sure.md", "docs/report.md", "docs/traces.md",
     "docs/sweeps.md", "docs/limits.md", "docs/tolerances.md", "docs/proving.md", "docs/optimizing.md",
     "docs/fitting.md", "docs/python.md", "docs/importing.md", "docs/own_claim.md",

@@ -156,7 +156,7 @@ def _file(fmu: "Fmu", width: int) -> Iterator[str]:
             factor = units.unit(shown).factor if port.kind == "Real" and shown in units.UNITS else 1.0
             unit = f" {shown}" if shown and shown != "1" else ""
             start = "" if port.start is None else str(port.start).lower()
-            if port.start is not None and factor != 1.0:
+            if port.start is not None and port.kind == "Real":
                 start = f"{port.start / factor:.9g}"
             if port.choices and port.start in port.numbers:
                 start = port.choices[port.numbers.index(int(port.start))]

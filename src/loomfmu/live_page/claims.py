@@ -1,7 +1,6 @@
 """The claims of a page: the rules as WebAssembly, and the question that each claim asks them."""
 
 import math
-from base64 import b64encode
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
@@ -24,7 +23,7 @@ Proven = tuple[Mapping[int, str], Mapping[str, tuple[float, float]]]
 def claims(
     scene: Scene, ends: Iterable[Scene], trace: Trace, verdicts: Sequence[Verdict], proven: Proven
 ) -> dict[str, Any]:
-    """Return the data with which the script judges: the rules, their signals, and a row for each claim.
+    """Return the data with which the script judges: the signals of the rules, and a row for each claim.
 
     Args:
         scene: the scene that is run
@@ -47,10 +46,14 @@ def claims(
     signals = [
         {"name": name, "about": trace.description(name), "beside": beside(table, name)} for name in table
     ]
-    rules = standard().RULES
-    wasm = b64encode(module_of(rules.name, code_of(rules))).decode()
     about = {"proven": proven[1], "fields": FIELDS, "signals": signals, "coarseness": coarseness(scene)}
-    return {"wasm": wasm, **about, "claims": rows}
+    return {**about, "claims": rows}
+
+
+def rules() -> bytes:
+    """The rules as a module of WebAssembly. Raises LoomfmuError if it cannot be built."""
+    source = standard().RULES
+    return module_of(source.name, code_of(source))
 
 
 def _claim(claim: Claim, method: Method, verdict: Verdict, trace: Trace, table: Table) -> dict[str, Any]:

@@ -7,30 +7,36 @@ import shlex
 import tempfile
 from base64 import b64encode
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from .. import units
+from ..cosim.master.steppers import SOURCE
 from ..cosim.reading import checked
 from ..cosim.recorded import usual_path
 from ..cosim.run import run
 from ..cosim.scenes.headings import heading
 from ..cosim.scenes.scene import Scene, files_of
 from ..cosim.scenes.settings import UNIFORM
+from ..cosim.standard import standard
 from ..cosim.whole import system
 from ..declaring.upstream import sources_of, upstream
 from ..declaring.variables import Variable, variables_of
+from ..display.progress import progress
 from ..errors import path_of
 from ..extras import need
 from ..files import check_target, starts_with, write_file
+from ..fmi.native.libraries import library_of
 from ..fmi.system.system import System, component_of
 from ..fmi.system.system_fmu import module
 from ..report.document import PRINT, assembled, sections
 from ..report.section import Section, Subject
 from ..report.templates import template
 from ..traces import Trace
-from .claims import Proven, claims
+from .claims import Proven, claims, rules
 from .knobs import Knob, Marks, ends_of, knobs
 
 MARK = "<!DOCTYPE html>\n<!-- a page of loomfmu -->\n"
@@ -76,14 +82,14 @@ def write(
     whole = system(loaded, "a page that runs the scene", "use loomfmu run --report")
     rows = {each.name: (number, each) for number, each in enumerate(variables_of(component_of(whole)))}
     varied = knobs(loaded, [name for name, (_, each) in rows.items() if each.settable], vary)
-    wasm = module(whole)
     with tempfile.TemporaryDirectory(prefix="loomfmu-") as directory:
-        started = run(loaded, output=Path(directory) / "start.h5")
+        stepping, judging = _compiled(whole)
+        started = run(loaded, output=Path(directory) / "start.h5", progress=True)
         with started.trace as trace:
             subject = Subject([trace], live=True)
             data = _data(loaded, subject, rows, varied) | _stepping(whole, trace, rows)
-            data["judging"] = claims(loaded, ends_of(loaded, varied), trace, started.claims, proven)
-            data["wasm"] = b64encode(wasm).decode()
+            judged = claims(loaded, ends_of(loaded, varied), trace, started.claims, proven)
+            data |= {"wasm": stepping, "judging": judged | {"wasm": judging}}
             ranges = [each for each in varied if not (each.choices or each.whole)]
             marked = {each.key: marks(loaded, each) for each in ranges if marks}
             controls = template("live.html.j2").render(knobs=varied, marked=marked)
@@ -98,6 +104,17 @@ def write(
     for warning in dict.fromkeys((*doubts, *(bare if marks else ()), *started.warnings)):
         warn(warning)
     return write_file(path, content.encode(), PAGE, inputs, overwrite)
+
+
+def _compiled(whole: System) -> list[str]:
+    """The modules that step and judge the scene, compiled beside the libraries that its run needs."""
+    libraries = [partial(library_of, each) for each in (standard().RULES, SOURCE)]
+    makes: list[Callable[[], Any]] = [partial(module, whole), rules, *libraries]
+    with progress("compiling the scene for the browser", len(makes)) as advance, ThreadPoolExecutor() as pool:
+        made = [pool.submit(each) for each in makes]
+        for each in made:
+            each.add_done_callback(lambda _done: advance(1))
+    return [b64encode(each.result()).decode() for each in made[:2]]
 
 
 def _data(scene: Scene, subject: Subject, rows: Rows, varied: Sequence[Knob]) -> dict[str, Any]:

@@ -100,7 +100,7 @@ FORGED = [  # what is done to a certificate, and what is said of it
     ('told["over"]["shaft.speed"][1] = (700 * 0.10471975511965977).hex()', "is not confirmed"),
     ("boxes.pop()", "a box is missing"),
     ("boxes.append(-1)", "more boxes"),
-    ("boxes[:] = [-1]", "is not confirmed"),
+    ("boxes[:] = [-1]", "for shaft angles from 0 to 720 deg, shaft.speed from 640 rev/min to 645 rev/min"),
     ("boxes.insert(0, 2 + 2 * 1)", "one end of a side is not enough"),  # the lower end of side 1 of 2
     ("boxes[:] = [2 + 2 * 2, -1]", "a box is missing"),
     ('told["scene"] = told["scene"].replace("bound = 0.1", "bound = 0.11")', "is not confirmed"),

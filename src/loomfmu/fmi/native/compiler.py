@@ -22,8 +22,6 @@ from .sources import code_of
 ARITHMETIC = ("-O2", "-ffp-contract=off", "-fwrapv")
 PLAIN = (*ARITHMETIC, "-g0", "-s", "-fno-sanitize=all")
 FLAGS = ("-shared", "-std=c99", *PLAIN)
-# a module of WebAssembly without imports; it exports what its source says
-MODULE = ("wasm32-wasi", "-mexec-model=reactor", "-std=c99", *PLAIN)
 # C++ that needs no library of its own, with C of ours in it
 CPLUSPLUS = ("-std=c++17", "-fno-exceptions", "-fno-rtti", "-nostdlib++", "-Wno-address-of-temporary")
 MINGW = "mingw-w64.txt"  # the licence of what the compiler links into a DLL beside our own
@@ -44,17 +42,9 @@ def binaries(name: str, fmi: int, code: dict[str, str], platforms: tuple[str, ..
     return {place: found[place] for place in places}
 
 
-def web_assembly(source: str, code: dict[str, str]) -> bytes:
-    """A file of some code as a module of WebAssembly. Raises LoomfmuError as `library`."""
-    with _folder(code) as directory:
-        output = Path(source).with_suffix(".wasm")
-        _call([*MODULE, "-o", str(output), source], directory, output.stem)
-        return (directory / output).read_bytes()
-
-
 def of_boxes(source: str, code: dict[str, str]) -> bytes:
     """A file of C++ that uses libm alone, as a shared library for this machine. Raises as `library`."""
-    with _folder(code) as directory:
+    with folder(code) as directory:
         output, (target,) = Path(source).with_suffix(HERE.suffix), HERE.targets
         _compile(source, output, target, directory, ("-shared", *CPLUSPLUS, *PLAIN))
         return (directory / output).read_bytes()
@@ -84,7 +74,7 @@ def library(source: Path, platform: str) -> bytes:
     is no compiler, or if compilation fails.
     """
     wanted = PLATFORMS.get(platform, HERE)
-    with _folder(code_of(source)) as directory:
+    with folder(code_of(source)) as directory:
         output, parts = Path(f"{source.stem}{wanted.suffix}"), []
         for target in wanted.targets:
             _compile(source.name, output, target, directory)
@@ -113,7 +103,7 @@ def _compiled(name: str, fmi: int, code: dict[str, str], platforms: tuple[str, .
     from concurrent.futures import ThreadPoolExecutor  # what is built already needs none
 
     targets = [target for platform in platforms for target in PLATFORMS[platform].targets]
-    with _folder(code) as directory, ThreadPoolExecutor() as pool:
+    with folder(code) as directory, ThreadPoolExecutor() as pool:
         made = pool.map(lambda target: _library_of(name, fmi, target, directory), targets)
         libraries = dict(zip(targets, made, strict=True))
     found = {}
@@ -135,7 +125,7 @@ def _library_of(name: str, fmi: int, target: str, directory: Path) -> bytes:
 
 
 @contextmanager
-def _folder(code: dict[str, str]) -> Iterator[Path]:
+def folder(code: dict[str, str]) -> Iterator[Path]:
     """A folder with these files, for as long as they are compiled."""
     with tempfile.TemporaryDirectory(prefix="loomfmu-") as name:
         for file, text in code.items():
@@ -146,25 +136,31 @@ def _folder(code: dict[str, str]) -> Iterator[Path]:
 def _compile(source: str, output: Path, target: str, directory: Path, flags: tuple[str, ...] = FLAGS) -> None:
     """Compile a file into a shared library. Paths are relative, so that none gets into it."""
     options = [option.format(name=output.stem) for option in platform_of(target).options]
-    _call([target, *flags, "-o", str(output), source, *options], directory, output.stem)
+    compiled_in(directory, target, *flags, "-o", str(output), source, *options)
 
 
-def _call(arguments: list[str], directory: Path, name: str) -> None:
-    """Call the compiler in a directory, with a target and what follows it."""
+def compiled_in(directory: Path, target: str, *arguments: str) -> None:
+    """Compile in a directory; what is compiled is named after `-o`. Raises LoomfmuError with the reason."""
+    run = zig(directory, "cc", "-target", target, *arguments)
+    if run.returncode != 0:
+        lines = run.stderr.strip().splitlines() or ["no reason given"]
+        reason = next((line for line in lines if "error:" in line), lines[0])
+        name = Path(arguments[arguments.index("-o") + 1]).stem
+        raise LoomfmuError(f"{name} cannot be compiled for {target}: {reason}")
+
+
+def zig(directory: Path, *arguments: str, **environment: str) -> "subprocess.CompletedProcess[str]":
+    """Call the compiler in a directory. Raises LoomfmuError if it is not installed."""
     _required()
     with _turns:
-        run = subprocess.run(
-            [sys.executable, "-m", COMPILER, "cc", "-target", *arguments],
+        return subprocess.run(
+            [sys.executable, "-m", COMPILER, *arguments],
             cwd=directory,
-            env=compiler_environment(),
+            env=compiler_environment() | environment,
             capture_output=True,
             text=True,
             check=False,
         )
-    if run.returncode != 0:
-        lines = run.stderr.strip().splitlines() or ["no reason given"]
-        reason = next((line for line in lines if "error:" in line), lines[0])
-        raise LoomfmuError(f"{name} cannot be compiled for {arguments[0]}: {reason}")
 
 
 def _required() -> Path:

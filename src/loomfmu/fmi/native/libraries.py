@@ -39,9 +39,9 @@ def needed_library(source: Path) -> Path:
 
 def module_of(source: str, code: dict[str, str]) -> bytes:
     """A file of some C code as a module of WebAssembly. Raises LoomfmuError if it cannot be built."""
-    from . import compiler
+    from . import compiler, web_assembly
 
-    make = partial(compiler.web_assembly, source, code)
+    make = partial(web_assembly.web_assembly, source, code)
     name = Path(source).with_suffix(".wasm").name
     return made_file(STEPPER, compiler.library_identity(code, source), name, make).read_bytes()
 

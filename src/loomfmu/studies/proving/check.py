@@ -47,7 +47,7 @@ from ...files import text_of
 from ...fmi import source
 from ...fmi.native.slicing import settings_of, sliced
 from ...fmi.native.translate import ENTRIES
-from ...sweeps.varied import varied
+from ...sweeps.varied import Varied, varied
 from . import FORMAT, MOST_REVOLUTIONS
 from .intervals import ALL, MATH, Ends, Interval, Unknown, floor, joined, number
 from .sides import SHAFT, START, check_side, outputs_of
@@ -97,6 +97,7 @@ class _Check:
         if not all(low < high and math.isfinite(high - low) for low, high in self._ends):
             raise Refused("the box is empty")
         self._sides: dict[tuple[str, ...], int] = {(SHAFT, START): 0}
+        self._varied: list[Varied] = []
         for place, (key, ends) in enumerate(zip(told["over"], self._ends, strict=True), 1):
             about = varied(scene, key)
             check_side(scene, about, ends)
@@ -104,12 +105,14 @@ class _Check:
             if self._sides.keys() & targets:
                 raise Refused(f"{key} varies twice")
             self._sides |= targets
+            self._varied.append(about)
         self._equations = told["equations"]
         within = f" of {scene.periods:.15g} revolution{'s' * (scene.periods != 1)}"
-        for (key, _ends), (low, high) in zip(told["over"].items(), self._ends, strict=True):
-            about = varied(scene, key)
+        for about, (low, high) in zip(self._varied, self._ends, strict=True):
             first, last = (units.exact(end, about.display) for end in (low, high))
-            within += f", {key} from {first} to {last}" + f" {about.shown_unit}" * (about.shown_unit != "1")
+            within += f", {about.key} from {first} to {last}" + f" {about.shown_unit}" * (
+                about.shown_unit != "1"
+            )
         names = [name_of(table) for table in scene.claims]
         self.lines: list[str] = []
         if not told["claims"] or any(names.count(claim["name"]) != 1 for claim in told["claims"]):
@@ -143,7 +146,7 @@ class _Check:
             (tree,) = covers
             lasting = partial(_spans_last, chain, condition, run)
             codes = self._codes(tree)
-            _confirm(name, tuple(self._ends), codes, lasting, lambda _box, _faces: False)
+            _confirm(name, self._text, tuple(self._ends), codes, lasting, lambda _box, _faces: False)
             return
         scale = [FINE, *(high - low for low, high in self._ends)]
         holds, rises = (
@@ -157,9 +160,17 @@ class _Check:
             if isinstance(condition, Sometime):
                 angle = float.fromhex(next(tree, ""))
                 if not low <= angle <= high:
-                    raise Refused(f"{name}: {angle} rad is not within {low} to {high}")
+                    at, first, end = (math.degrees(each) for each in (angle, low, high))
+                    raise Refused(f"{name}: {at:.6g} deg is not within {first:.6g} to {end:.6g} deg")
                 low = high = angle
-            _confirm(name, ((low, high), *self._ends), tree, holds, rises)
+            _confirm(name, self._text, ((low, high), *self._ends), tree, holds, rises)
+
+    def _text(self, box: Box) -> str:
+        """A box as people read it: a range of the shaft angle, if it has one, and those of the values."""
+        angles, ends = box[: -len(self._varied) or None], box[len(box) - len(self._varied) :]
+        shown = [f"shaft angles from {math.degrees(a):.6g} to {math.degrees(b):.6g} deg" for a, b in angles]
+        values = zip(self._varied, ends, strict=True)
+        return ", ".join([*shown, *(f"{v.key} from {v.show(a)} to {v.show(b)}" for v, (a, b) in values)])
 
     def _codes(self, tree: Sequence[Any]) -> Iterator[Any]:
         """Yield what a tree says, and count it."""
@@ -185,6 +196,7 @@ def _check_harmless(told: dict[str, Any]) -> None:
 
 def _confirm(
     name: str,
+    text: Callable[[Box], str],
     box: Box,
     tree: Iterator[int],
     holds: Callable[[Box], bool],
@@ -203,20 +215,16 @@ def _confirm(
         if code is None or not isinstance(code, int) or not -1 <= code < sides:
             raise Refused(f"{name}: a box is missing")
         if faces and not rises(box, faces):
-            raise Refused(f"{name} is not confirmed for {_text(box)}: one end of a side is not enough")
+            raise Refused(f"{name} is not confirmed for {text(box)}: one end of a side is not enough")
         box = tuple((ends[faces[n]],) * 2 if n in faces else ends for n, ends in enumerate(box))
         if code < 0 and not holds(box):
-            raise Refused(f"{name} is not confirmed for {_text(box)}")
+            raise Refused(f"{name} is not confirmed for {text(box)}")
         if code >= 0:
             low, high = box[code]
             middle = min(max(0.5 * (low + high), low), high)
             stack += [(*box[:code], part, *box[code + 1 :]) for part in ((middle, high), (low, middle))]
     if next(tree, None) is not None:
         raise Refused(f"{name}: there are more boxes than the box has parts")
-
-
-def _text(box: Box) -> str:
-    return ", ".join(f"{low:.6g} to {high:.6g}" for low, high in box)
 
 
 def _all_over(
