@@ -237,7 +237,9 @@ def conclusion(found: Optimum) -> Iterator[str]:
         goal = found.study.goals[0]
         error = shown_error(goal, best, 0)
         known = f" ({error})" if error else ""
-        yield f"{goal.words[0].upper()}{goal.words[1:]}: {shown_goal(goal, best, 0)}{known}."
+        cases = len(found.study.cases)
+        worst = f", in the worst of {cases} cases" if cases else ""
+        yield f"{goal.words[0].upper()}{goal.words[1:]}: {shown_goal(goal, best, 0)}{known}{worst}."
         if best.limits:
             yield f"It is limited by {' and '.join(map(_in_words, best.limits))}."
             yield from _gains(found, best)
