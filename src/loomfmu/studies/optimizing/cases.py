@@ -1,37 +1,17 @@
-"""The load cases of a study: values under which every design is run, and the worst of them counts."""
+"""The load cases that a study file states."""
 
-from __future__ import annotations
-
-import math
-from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Collection
 from itertools import product
 from typing import Any
 
-from ...cosim.scenes.scene import Scene
-from ...cosim.scenes.tolerances import ends_of
 from ...errors import LoomfmuError, shown
 from ...sweeps.axes import flattened
 from ...sweeps.header import Header
-from ...sweeps.varied import Varied, varied
-from ..tolerances.distributions import distribution_of
+from ...sweeps.varied import varied
+from ..cases import MOST, Case
+from ..corners import corners_of
 
 CORNERS = "corners"
-MOST = 64  # cases
-
-
-@dataclass(frozen=True)
-class Case:
-    """A load case: its name, and its settings of the scene; `doubts` warn of their units."""
-
-    name: str
-    settings: Mapping[str, Any] = field(default_factory=dict)
-    doubts: tuple[str, ...] = ()
-
-    def and_(self, other: Case) -> Case:
-        """Both at once."""
-        name = ", ".join(filter(None, (self.name, other.name)))
-        return Case(name, {**self.settings, **other.settings}, (*self.doubts, *other.doubts))
 
 
 def cases_of(head: Header, tables: dict[str, Any], taken: Collection[str]) -> tuple[Case, ...]:
@@ -43,7 +23,7 @@ def cases_of(head: Header, tables: dict[str, Any], taken: Collection[str]) -> tu
     if not isinstance(given, list) or not all(isinstance(each, dict) for each in given):
         raise LoomfmuError("cases are written as [[cases]] tables")
     stated = [_case(head, table, number) for number, table in enumerate(given, 1)]
-    corners = _corners(head.scene) if _wants_corners(tables) else []
+    corners = corners_of(head.scene) if _wants_corners(tables) else []
     found = [one.and_(other) for one, other in product(stated or [Case("")], corners or [Case("")])]
     if found == [Case("")]:
         return ()
@@ -85,31 +65,3 @@ def _wants_corners(tables: dict[str, Any]) -> bool:
     if wanted not in (None, CORNERS):
         raise LoomfmuError(f'tolerances = {shown(wanted)} must be "{CORNERS}"')
     return wanted is not None
-
-
-def _corners(scene: Scene) -> list[Case]:
-    """The scene's own values, and the corners of its tolerances."""
-    if not scene.tolerances:
-        raise LoomfmuError(f'tolerances = "{CORNERS}", but the scene states no [tolerances]')
-    ends = [_ends(scene, key) for key in scene.tolerances]
-    if 2 ** len(ends) >= MOST:
-        raise LoomfmuError(f"{len(ends)} tolerances have {2 ** len(ends)} corners; the limit is {MOST} cases")
-    corners = [
-        Case(
-            ", ".join(f"{each.key} = {each.show(value)}" for each, value in corner),
-            {each.key: each.setting(value) for each, value in corner},
-        )
-        for corner in product(*ends)
-    ]
-    return [Case("own values"), *corners]
-
-
-def _ends(scene: Scene, key: str) -> Sequence[tuple[Varied, float]]:
-    """A variable with a tolerance, at both ends of this."""
-    variable, stated = varied(scene, key), ends_of(scene.tolerances[key])
-    if stated is None:
-        ends = distribution_of(scene, key, scene.tolerances[key]).ends
-        if math.isinf(ends[1] - ends[0]):
-            raise LoomfmuError(f'tolerances: {key} is normal without ends; add within = ["LOW", "HIGH"]')
-        return [(variable, end) for end in ends]
-    return [(variable, float(variable.read(end))) for end in stated]

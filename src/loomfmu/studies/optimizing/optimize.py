@@ -12,13 +12,13 @@ import numpy as np
 
 from ... import units
 from ...cosim.claims.claims import called
-from ...cosim.prepared import Errors, Prepared
+from ...cosim.prepared import Prepared
 from ...cosim.reading import protected
 from ...cosim.results import Evaluation
 from ...cosim.scenes.scene import files_of
 from ...display.printed import as_csv
 from ...display.progress import progress as progress_bar
-from ...errors import LoomfmuError, listed, path_of, shown
+from ...errors import LoomfmuError, listed, path_of
 from ...extras import install, installed, need
 from ...files import ANY, write_file
 from ...sweeps.directory import PARTIAL, Contents, owned
@@ -26,11 +26,10 @@ from ...sweeps.schedule import check_place, cluster, local, resumable
 from ...sweeps.varied import labelled
 from ...sweeps.worker import job_of
 from ...traces import Verdict
-from ...traces.verdict import FAILS, HOLDS, UNDECIDED
 from .. import rewritten
+from ..cases import evaluated, worst
 from . import study as studies
 from .binding import binding, indifferent
-from .cases import Case
 from .optimum import Best, Optimum, front_table
 from .runs import Design, Point, Runs
 from .search import expected, generation, searched
@@ -77,7 +76,7 @@ def optimize(
             files.check(study, own)
             scene = protected(study.scene)
             loom = Prepared(scene, None, study.flavour, (), study.measures)
-            tried = [_evaluated(loom, case, "none") for case in study.situations]
+            tried = [evaluated(loom, case, "none") for case in study.situations]
         except LoomfmuError as error:
             raise LoomfmuError(f"{path}: {error}") from None
         verdicts = tried[0].claims
@@ -169,36 +168,13 @@ def _written(runs: Runs, design: Design, names: Sequence[str], path: Path) -> Be
     rewritten.write(study.scene, study.written(design.values), path, True, _origin(study, path))
     loom = Prepared(path, None, study.flavour, (), study.measures)
     # with their errors, as any run of it has them
-    cases = {case.name: _evaluated(loom, case, "all") for case in study.situations}
-    verdicts = [_worst(each) for each in zip(*map(_named, cases, cases.values()), strict=True)]
+    cases = {case.name: evaluated(loom, case, "all") for case in study.situations}
+    verdicts = worst(cases)
     errors = [max(_error_of(goal, each) for each in cases.values()) for goal in study.goals]
     values = dict(zip((each.key for each in study.variables), design.values, strict=True))
     goals = [goal.sign * float(height) for goal, height in zip(study.goals, design.heights, strict=True)]
     limits = binding(runs, design, names, np.array([each.bound for each in verdicts]))
-    return Best(
-        values, tuple(goals), tuple(errors), tuple(verdicts), tuple(limits), indifferent(runs, design), path
-    )
-
-
-def _evaluated(loom: Prepared, case: Case, errors: Errors) -> Evaluation:
-    """A scene in a case. Raises LoomfmuError that names the case."""
-    try:
-        found = loom.evaluate(dict(case.settings), errors=errors)
-        found.check_end()
-    except LoomfmuError as error:
-        raise LoomfmuError(f"case {shown(case.name)}: {error}" if case.name else str(error)) from None
-    return found
-
-
-def _named(name: str, found: Evaluation) -> list[Verdict]:
-    """The verdicts in a case, which say its name."""
-    return [replace(each, claim=f"{each.claim} (case {name})") if name else each for each in found.claims]
-
-
-def _worst(verdicts: Sequence[Verdict]) -> Verdict:
-    """The verdict that fails, or is undecided, or else is nearest to its bound."""
-    order = (HOLDS, UNDECIDED, FAILS)
-    return max(verdicts, key=lambda each: (order.index(each.word), -np.nan_to_num(each.away, nan=-np.inf)))
+    return Best(values, tuple(goals), tuple(errors), verdicts, tuple(limits), indifferent(runs, design), path)
 
 
 def _error_of(goal: Goal, found: Evaluation) -> float:

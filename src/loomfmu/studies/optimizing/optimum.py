@@ -203,10 +203,15 @@ def _claim_rows(found: Optimum, best: Best) -> list[tuple[str, ...]]:
             each.shown(each.worst),
             each.shown(each.bound),
             each.shown_distance,
-            _note(found, best, number),
+            "; ".join(filter(None, (_case(found, each), _note(found, best, number)))),
         )
         for number, each in enumerate(best.verdicts)
     ]
+
+
+def _case(found: Optimum, verdict: Verdict) -> str:
+    """The case in which a claim is worst."""
+    return verdict.note.partition(";")[0] if found.study.cases else ""
 
 
 def front_table(found: Optimum) -> Table:

@@ -16,7 +16,8 @@ from ...errors import LoomfmuError, listed, shown, suggestion
 from ...sweeps.axes import Range, flattened, grid_axis, range_of, whole
 from ...sweeps.header import HEAD, Header, check_by_scene, read, variables
 from ...sweeps.varied import Keyed, Value, shown_unit, varied
-from .cases import Case, cases_of
+from ..cases import Case
+from .cases import cases_of
 
 WAYS = {"minimise": 1.0, "maximise": -1.0}  # what a goal is multiplied by to be made small
 KEYS = (*HEAD, *WAYS, "safety", "except", "ranges", "choices", "cases", "tolerances", "search")
