@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...errors import LoomfmuError, listed
+from ...errors import listed
 from ...traces import Channel, Column, Signals
 from ...traces.signals import Floats
 from ...traces.verdict import place_text
@@ -23,10 +23,13 @@ RATES = "rate of ", "second rate of "
 
 
 class Expressed(Signals):
-    """A run with one expression more, under its text. Raises LoomfmuError where it divides by 0."""
+    """A run with one expression more, under its text.
+
+    Where it divides by 0 it has no values, and `why` says so; the text is empty otherwise.
+    """
 
     def __init__(self, run: Signals, expression: Expression):
-        self._run, self._node = run, expression.node
+        self._run, self._node, self.why = run, expression.node, ""
         self.name, self.cut_short = run.name, run.cut_short
         self.wires, self.fmus, self.own_speeds = run.wires, run.fmus, run.own_speeds
         values, *rates = self._jet(self._node)
@@ -77,10 +80,8 @@ class Expressed(Signals):
             angle, turn = self.shaft_angle[place], 2.0 * np.pi
             revolution = int(angle // turn) + 1 if "shaft.angle" in self._run else None
             where = place_text(float(self.time[place]), float(angle % turn), revolution)
-            raise LoomfmuError(
-                f"{self.name}: the expression divides by {node.parts[1].text}, which is or passes 0 at"
-                f" {where}"
-            )
+            self.why = f"it divides by {node.parts[1].text}, which is or passes 0 at {where}"
+            return [np.full(len(values), np.nan)]
         found = [above[0] / values]
         if len(above) > 1 and len(below) > 1 and not _may_pass_zero(self.time, below):
             found.append((above[1] - found[0] * below[1]) / values)
@@ -166,7 +167,7 @@ class Expressed(Signals):
         return iter([*self._run, *self._made])
 
     def channel(self, signal: str) -> Channel:
-        """The channel of a signal, or of the expression. Raises LoomfmuError for one that is not there."""
+        """The channel of a signal, or of the expression."""
         if signal not in self._made:
             return self._run.channel(signal)
         return Channel("", signal, self._unit, self._display, signal)

@@ -47,14 +47,17 @@ class _OfExpression(Bounded, kind=False):
 
     def _alone(self, trace: Signals) -> Verdict:
         run = Expressed(trace, self._expression)
-        return run_of(trace).verdict(run, super().question(run), self.name)
+        found = run_of(trace).verdict(run, super().question(run), self.name)
+        return replace(found, holds=False, decided=False, error=np.inf, note=run.why) if run.why else found
 
     def _worst(self, trace: Signals) -> tuple["_OfExpression", Verdict]:
-        """Return the case with the worst value; if this holds, one that does not, if there is one."""
+        """Return the case with the worst value; if this holds, it is as undecided as any other one."""
         judged = [(case, case._alone(trace)) for case in self._cases]
         judged.sort(key=lambda each: (not np.isnan(each[1].worst), self.sense * each[1].worst))
-        failing = [each for each in judged if not each[1].holds]
-        return judged[0] if judged[0] in failing or not failing else failing[0]
+        (case, worst), open_ = judged[0], [each for _case, each in judged if not each.holds]
+        if worst.holds and open_:
+            worst = replace(worst, holds=False, decided=False, error=open_[0].error, note=open_[0].note)
+        return case, worst
 
     def judge(self, trace: Signals) -> Verdict:
         return replace(self._worst(trace)[1], signal=str(self.signal))
