@@ -150,3 +150,31 @@ def test_a_case_that_cannot_be_run_is_refused_before_the_search() -> None:
     jams = "[[cases]]\nname = 'long'\n'weft.coupler_length' = '500 mm'\n"
     with pytest.raises(LoomfmuError, match=r"study.toml: case 'long': "):
         searched(WIDEST + CLEARANCE + jams, alone())
+
+
+def test_corners_of_other_measured_values_are_another_study() -> None:
+    heads = Path("heads.csv")
+    heads.write_text("belt.head_mass [g]\n105\n116\n")
+    measured = '[tolerances]\n"belt.head_mass" = { measured = "heads.csv" }'
+    found = searched(f'tolerances = "corners"\n{WIDEST}{CLEARANCE}', alone(measured), FAST + QUICK)
+    heads.write_text("belt.head_mass [g]\n105\n130\n")
+    with pytest.raises(LoomfmuError, match="changed since"):
+        loomfmu.optimize("study.toml", processes=1)
+    heavier = searched(
+        f'tolerances = "corners"\n{WIDEST}{CLEARANCE}', alone(measured), FAST + QUICK, restart=True
+    )
+    assert heavier.goal < found.goal
+
+
+def test_the_best_scene_finds_the_file_of_a_claim_of_ones_own() -> None:
+    Path("own.py").write_text(
+        "from loomfmu.claim import OwnClaim, Quantity, argument\n\n\n"
+        "class Longest(OwnClaim):\n"
+        '    at_most: float = argument(Quantity("m"))\n\n'
+        '    def signals(self, run):\n        return ["belt.free_length"]\n\n'
+        '    def value(self, run):\n        return run["belt.free_length"].max()\n'
+    )
+    own = '[[claims]]\nname = "own"\nkind = "own.py:Longest"\nat_most = "9 m"\n'
+    found = searched(WIDEST + CLEARANCE, alone(own), FAST + QUICK)
+    assert found.verdicts[1].signal == "own.py:Longest" and found.verdicts[1].holds
+    assert 'kind = "../../own.py:Longest"' in Path("results/study/best.toml").read_text()

@@ -69,7 +69,8 @@ def optimize(
     need(path, "study", *["sweep"] * bool(scheduler))
     job = replace(job_of(study), errors="none", measures=study.measures)  # a search goes up to the bounds
     files = Files(path_of(output, "output") if output is not None else Path("results") / study.name)
-    fingerprint = hashlib.sha256(f"{study.text}\0{job.identity}".encode()).hexdigest()
+    cases = repr(study.cases) if study.cases else ""  # their ends may be of a file of measured values
+    fingerprint = hashlib.sha256(f"{study.text}\0{job.identity}{cases}".encode()).hexdigest()
     with resumable(files.directory, "runs"), ExitStack() as stack:
         own = own_point(study)
         try:  # what could not be run or written is refused now, not after the search
