@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scene_texts import claim, loom, parsed, verdicts
 
 from loomfmu import judge
-from loomfmu.cosim.claims import expressions
+from loomfmu.cosim.claims import claims, expressions
 from loomfmu.cosim.claims.expressed import Expressed
 from loomfmu.cosim.planning.requested import Requested
 from loomfmu.cosim.reading import checked_claims
@@ -241,6 +241,19 @@ def test_the_worst_case_gives_the_value_and_any_open_one_leaves_it_undecided() -
     assert found.worst == pytest.approx(3.0, rel=1e-9)  # of b.x: near its extreme the quintic is exact to h^6
     failing = judge(run(), kind="below", signal="max(b.x, c.share * (1 m))", bound="2 m")
     assert failing.word == "FAILS" and failing.worst == found.worst
+
+
+def test_a_case_that_is_farther_from_the_bound_but_less_sure_leaves_it_undecided() -> None:
+    unsure = {
+        "a.x": ("m", np.cos(TIME), {"rate": "v", "beside": Beside(error="off")}),
+        "a.off": ("m", 3.0 + 0.0 * TIME),
+    }
+    for trace, word in ((run(), "holds"), (run(**unsure), "undecided")):
+        asked = claims.read({"kind": "below", "signal": "max(a.x, b.x)", "bound": "3.5 m"}, trace.unit)
+        found = asked.settled(trace, asked.judge(trace), 0.0, 1e-12, 0.0)
+        # b.x comes to 3 m, 0.5 m from the bound; a.x to 1 m, but it may be off by 3 m
+        assert (found.word, found.worst) == (word, pytest.approx(3.0, rel=1e-9))
+    assert found.error == pytest.approx(3.0)
 
 
 def test_samples_alone_are_judged_if_asked() -> None:
