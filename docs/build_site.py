@@ -13,9 +13,9 @@ from website import assembly, contents
 SOURCE = contents.ROOT / "build" / "site-source"
 
 
-def build(source: Path = SOURCE) -> Path:
+def build(source: Path = SOURCE, run_notebooks: bool = True) -> Path:
     """Assemble the site and have it built, warnings as errors; returns its folder, beside the source."""
-    assembly.assemble(source)
+    assembly.assemble(source, run_notebooks)
     subprocess.run(
         [
             sys.executable,

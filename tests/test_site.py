@@ -24,7 +24,7 @@ COUNTED = ("li", "ul", "ol", "tr", "td", "th", "h1", "h2", "h3", "pre", "img", "
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The site, built as by `make site`: takes a quarter of a minute."""
-    return build_site.build(tmp_path_factory.mktemp("site") / "source")
+    return build_site.build(tmp_path_factory.mktemp("site") / "source", run_notebooks=False)
 
 
 def test_every_page_of_the_repository_is_on_the_site_once() -> None:
@@ -33,6 +33,7 @@ def test_every_page_of_the_repository_is_on_the_site_once() -> None:
     there = [
         page for each in ("*", "docs/**/*", "fmus/**/*", "results/*") for page in root.glob(f"{each}.md")
     ]
+    there += (root / "docs" / "notebooks").glob("*.py")
     assert sorted(placed) == sorted(page.relative_to(root).as_posix() for page in there)
 
 
@@ -44,7 +45,8 @@ def test_the_guides_that_are_ordered_exist() -> None:
 
 def test_pages_read_alike_in_the_repository_and_on_the_site(tmp_path: Path) -> None:
     repository = MarkdownIt("commonmark").enable("table")
-    for page in (page for pages in contents.sections([]).values() for page in pages):
+    placed = (page for pages in contents.sections([]).values() for page in pages)
+    for page in (page for page in placed if page not in contents.NOTEBOOKS):
         text = assembly.MARKER.sub("", (contents.ROOT / page).read_text())
         converted = assembly.converted(page, text, tmp_path)
         # without colours: the repository's view wraps no line of code

@@ -1,8 +1,8 @@
 """Lays out what MkDocs reads: the pages as they lie in the repository, so that their links stay as they are.
 
-Three things change: equations in fences become MathML, lists within lists are indented as MkDocs expects, and
-a marker such as `<!-- site: loomfmu run x.toml --report > results/x.html -->` becomes what is written,
-in a frame.
+Four things change: equations in fences become MathML, lists within lists are indented as MkDocs expects,
+notebooks are run and shown with their outputs, and a marker such as
+`<!-- site: loomfmu run x.toml --report > results/x.html -->` becomes what is written, in a frame.
 """
 
 import re
@@ -16,7 +16,7 @@ import yaml
 
 from loomfmu.fmi.description import equations
 
-from . import contents, reference
+from . import contents, notebooks, reference
 
 HERE = Path(__file__).parent
 FENCE = re.compile(r"^```.*?^```$", re.DOTALL | re.MULTILINE)
@@ -26,8 +26,11 @@ LINK = re.compile(r"\]\(([^)\s#]+)(?:#[^)\s]*)?\)")
 MARKER = re.compile(r"^<!-- site: (loomfmu .*) > (\S+) -->$", re.MULTILINE)
 
 
-def assemble(target: Path) -> dict[str, list[str]]:
-    """Write pages, the files they link to and the configuration; returns the pages by section."""
+def assemble(target: Path, run_notebooks: bool = True) -> dict[str, list[str]]:
+    """Write pages, the files they link to and the configuration; returns the pages by section.
+
+    Notebooks that are not run, which takes half a minute, are shown without outputs.
+    """
     pages = target / "pages"
     shutil.rmtree(target, ignore_errors=True)
     generated = reference.pages()
@@ -36,11 +39,14 @@ def assemble(target: Path) -> dict[str, list[str]]:
     for name, paths in sections.items():
         entries = []
         for path in paths:
-            text = (
-                generated[path] if path in generated else (contents.ROOT / path).read_text(encoding="utf-8")
-            )
+            if path in contents.NOTEBOOKS:
+                path, text = _notebook(path, pages, run_notebooks)
+            elif path in generated:
+                text = generated[path]
+            else:
+                text = (contents.ROOT / path).read_text(encoding="utf-8")
             entries.append({contents.title(text): path})
-            if path not in generated:
+            if (contents.ROOT / path).exists():
                 _copy_linked(path, text, pages)
                 text = converted(path, text, pages)
             file = pages / path
@@ -79,13 +85,32 @@ def _copy_linked(path: str, text: str, pages: Path) -> None:
             shutil.copy(source, copy)
 
 
-def _frame(path: str, command: str, file: str, pages: Path) -> str:
-    """Run a command in a scratch folder; what it writes, linked and in a frame."""
+def _scratch(pages: Path) -> Path:
+    """A folder outside of the site with the example scenes."""
     scratch = pages.parent / "scratch"
     scratch.mkdir(parents=True, exist_ok=True)
-    subprocess.run(
-        [sys.executable, "-m", "loomfmu.cli", "init"], cwd=scratch, check=True, stdout=subprocess.DEVNULL
-    )
+    init = [sys.executable, "-m", "loomfmu.cli", "init"]
+    subprocess.run(init, cwd=scratch, check=True, stdout=subprocess.DEVNULL)
+    return scratch
+
+
+def _notebook(path: str, pages: Path, run: bool) -> tuple[str, str]:
+    """Run a notebook beside the example scenes and the measured data; its page, and the text of that."""
+    source, scratch, folder = contents.ROOT / path, _scratch(pages), (pages / path).parent
+    folder.mkdir(parents=True, exist_ok=True)
+    shutil.copy(contents.ROOT / "docs" / "measured.csv", scratch)
+    if run:  # in a program of its own: a notebook may change what it likes
+        subprocess.run([sys.executable, HERE / "notebooks.py", source, folder], cwd=scratch, check=True)
+    else:
+        unrun = [notebooks.Cell(*each, []) for each in notebooks.cells(source.read_text(encoding="utf-8"))]
+        notebooks.write(source, unrun, folder)
+    page = Path(path).with_suffix(".md")
+    return page.as_posix(), (folder / page.name).read_text(encoding="utf-8")
+
+
+def _frame(path: str, command: str, file: str, pages: Path) -> str:
+    """Run a command in a scratch folder; what it writes, linked and in a frame."""
+    scratch = _scratch(pages)
     subprocess.run([sys.executable, "-m", "loomfmu.cli", *shlex.split(command)[1:]], cwd=scratch, check=True)
     shown = (pages / path).parent / Path(file).name
     shown.parent.mkdir(parents=True, exist_ok=True)

@@ -16,6 +16,9 @@ GUIDES = (
     "docs/own_mechanism.md",
 )  # fmt: skip
 PROJECT = ("CHANGELOG.md", "SECURITY.md", "THIRD_PARTY.md")
+NOTEBOOKS = tuple(
+    f"docs/notebooks/{each}.py" for each in ("how_fast", "which_dobby", "measured_trace", "other_tool")
+)  # run when the site is built
 CONTRIBUTING = (
     "CONTRIBUTING.md",
     *(f"docs/contributing/{each}.md" for each in ("architecture", "components", "tests", "words")),
@@ -33,6 +36,7 @@ def sections(generated: list[str]) -> dict[str, list[str]]:
     return {
         "Start": [HOME, TOUR],
         "Guides": [*GUIDES, *(page for page in docs if page not in placed)],
+        "Notebooks": list(NOTEBOOKS),
         "Mechanisms": ["fmus/README.md", *(page.relative_to(ROOT).as_posix() for page in mechanisms)],
         "Reference": [*REFERENCE, *generated],
         "Evidence": ["results/validation.md", "results/benchmarks.md"],

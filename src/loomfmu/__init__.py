@@ -35,7 +35,9 @@ if TYPE_CHECKING:
     from .studies.optimizing.optimum import Optimum as Optimum
     from .studies.proving.proofs import Proofs as Proofs
     from .studies.proving.prove import prove as prove
+    from .studies.tolerances.draw import draw_looms as draw_looms
     from .studies.tolerances.results import Tolerances as Tolerances
+    from .studies.tolerances.shares import Shares as Shares
     from .studies.tolerances.tolerances import tolerances as tolerances
     from .sweeps.run import Sweep as Sweep
     from .sweeps.run import sweep as sweep
@@ -57,12 +59,14 @@ _HOMES = {
     "Prepared": "cosim.prepared",
     "Proofs": "studies.proving.proofs",
     "Result": "cosim.results",
+    "Shares": "studies.tolerances.shares",
     "Sweep": "sweeps.run",
     "Tolerances": "studies.tolerances.results",
     "Trace": "traces",
     "Verdict": "traces",
     "compare": "traces",
     "design": "",
+    "draw_looms": "studies.tolerances.draw",
     "evaluate": "cosim.run",
     "prepare": "cosim.run",
     "judge": "loom.judged",

@@ -42,6 +42,10 @@ def test_what_a_scene_names_is_found_from_another_folder(tmp_path: Path) -> None
         '[a]\ncomponent = "own/cam.py:Cam"\n[b]\nfmu = "/m.fmu"\n', tmp_path, moved.parent
     )
     assert component == '[a]\ncomponent = "../own/cam.py:Cam"\n[b]\nfmu = "/m.fmu"\n'
+    more = '[[claims]]\nkind = "own.py:Gap"\n[[claims]]\nkind = "dwell"\n'
+    more += '[tolerances]\n"a.b" = { measured = "c.csv" }\n"a.c" = [0, 1]\n'
+    files = rewritten._moved(more, tmp_path, moved.parent)
+    assert files == more.replace("own.py", "../own.py").replace("c.csv", "../c.csv")
     with pytest.raises(LoomfmuError, match="is an input of this command"):
         scene = scenes.load(SIMS / "wl680_3600.toml")
         rewritten.write(scene, {}, SIMS / "wl680_3600.toml")

@@ -5,6 +5,7 @@ import re
 import tomllib
 from collections.abc import Mapping
 from fnmatch import fnmatch
+from itertools import permutations
 from pathlib import Path
 from random import Random
 from typing import Any, NamedTuple
@@ -16,6 +17,7 @@ TABLES = tomllib.loads((Path(__file__).with_name("families.toml")).read_text(enc
 FAMILIES = tuple(TABLES["families"])
 PLACE = re.compile(r"<(\w+)>")
 NAMED, SIGNALS = 4, 5  # claims of a scene: of kinds that its family lists, and on outputs that are drawn
+EXPRESSIONS = 2
 COARSEST, FINEST, MANY = 45, 4000, 1440  # steps in a revolution
 FASTEST = 900.0  # rev/min
 JUMP = (math.log(1e-5), math.log(1e-2))  # of a revolution, from one row of a table to a near one
@@ -54,6 +56,7 @@ def drawn(seed: int, family: str, number: int) -> Drawn:
     text = _filled(tables["text"], tables["draw"], random)
     listed = random.sample(tables["claims"], min(NAMED, len(tables["claims"])))
     claims = [_listed(each, tables["draw"], random) for each in listed] + _on_outputs(text, tables, random)
+    claims += _on_expressions(text, tables, Random(f"{seed} {family} {number} expressions"))
     return Drawn(family, number, text, claims, _settings(random), tables["fine"])
 
 
@@ -113,13 +116,7 @@ def _listed(table: Mapping[str, Any], draw: Mapping[str, Any], random: Random) -
 
 def _on_outputs(text: str, tables: Mapping[str, Any], random: Random) -> list[Claim]:
     """Claims `above` and `below` on random outputs, some within a random window of the shaft's angle."""
-    outputs = [
-        f"{name}.{port.name}"
-        for name, instance in parse(text).instances.items()
-        for port in instance.fmu.ports.values()
-        if port.causality == "output" and port.kind == "Real"
-    ]
-    fitting = [each for each in outputs if any(fnmatch(each, some) for some in tables["outputs"])]
+    fitting = list(_outputs(text, tables))
     found = []
     for signal in random.sample(fitting, min(SIGNALS, len(fitting))):
         table: dict[str, Any] = {"kind": random.choice(["above", "below"]), "signal": signal}
@@ -127,6 +124,41 @@ def _on_outputs(text: str, tables: Mapping[str, Any], random: Random) -> list[Cl
             start, width = random.uniform(0.0, 360.0), math.exp(random.uniform(0.0, math.log(300.0)))
             table["window"] = [f"{start:.6g} deg", f"{(start + width) % 360.0:.6g} deg"]
         found.append(Claim(table, "bound"))
+    return found
+
+
+def _outputs(text: str, tables: Mapping[str, Any]) -> dict[str, str]:
+    """The outputs that claims may be on, with their units."""
+    found = {
+        f"{name}.{port.name}": port.unit
+        for name, instance in parse(text).instances.items()
+        for port in instance.fmu.ports.values()
+        if port.causality == "output" and port.kind == "Real"
+    }
+    return {
+        name: unit for name, unit in found.items() if any(fnmatch(name, some) for some in tables["outputs"])
+    }
+
+
+def _on_expressions(text: str, tables: Mapping[str, Any], random: Random) -> list[Claim]:
+    """Claims `above` and `below` on expressions of two outputs of the same unit, some with a third factor."""
+    units = _outputs(text, tables)
+    pairs = [pair for pair in permutations(units, 2) if units[pair[0]] == units[pair[1]]]
+    found = []
+    for one, other in random.sample(pairs, min(EXPRESSIONS, len(pairs))):
+        share, third = f"{random.uniform(0.3, 2.0):.3g}", random.choice([one, other])
+        size = f"(1 {units[third]})" if units[third] != "1" else "1"
+        kind, form = random.choice(
+            [
+                (random.choice(["above", "below"]), "{one} - {share} * {other}"),
+                (random.choice(["above", "below"]), "{share} * {one} * {third} / {size} - {other}"),
+                ("below", "abs({one} + {share} * {other})"),
+                ("below", "max({one}, {share} * {other}) - {third} * {third} / {size}"),
+                ("above", "min({one}, -{share} * {other})"),
+            ]
+        )
+        signal = form.format(one=one, other=other, share=share, third=third, size=size)
+        found.append(Claim({"kind": kind, "signal": signal}, "bound"))
     return found
 
 

@@ -49,6 +49,7 @@ def _places(options: argparse.Namespace) -> dict[str, Any]:
     ),
     argument("--points", "N", "values of the first that are tried first (41)", type=int),
     argument("--rows", "N", "values of the second that are taken (11)", type=int),
+    flag("--corners", "find limits that also hold at all corners of the scene's [tolerances]"),
     flag("--prove", "also prove each range for all shaft angles, up to its limits"),
     SET,
     argument("--output", "FILE.csv|svg|png|pdf", "also write the limits as a table or a picture"),
@@ -71,6 +72,7 @@ def limit(options: argparse.Namespace) -> int:
         from_=options.from_,
         to=options.to,
         set=pairs(options.overrides),
+        corners=options.corners,
         prove=options.prove,
         progress=True,
         **{name: count for name, count in counts.items() if count is not None},
@@ -104,15 +106,23 @@ def _reported(
         " [tolerances] by default"
     ),
     flag("--prove", "also prove the worst cases, for all shaft angles and all values within the tolerances"),
+    argument("--looms", "N", "draw N looms instead, and find in which share of them claims hold", type=int),
+    argument("--share", "SHARE", "with --looms: the share, such as 99%%, in which all claims are to hold"),
+    argument("--seed", "N", "with --looms: the seed of the drawing (1)", type=int),
     SET,
     argument("--picture", "FILE.svg|png|pdf", "also draw the worst cases"),
     force("the picture even if loomfmu did not draw it"),
     statuses=(
-        "0 all hold in their worst cases; 1 a claim fails or is undecided; 2 bad input or a failed FMU."
+        "0 all hold in their worst cases, in all looms, or in the share of them; 1 a claim fails or is"
+        " undecided; 2 bad input or a failed FMU."
     ),
 )
 def tolerances(options: argparse.Namespace) -> int:
-    """Find the worst case of every claim within tolerances."""
+    """Find the worst case of every claim within tolerances, or the share of looms in which it holds."""
+    if options.looms is not None:
+        return _shares(options)
+    if options.share is not None or options.seed is not None:
+        raise LoomfmuError("--share and --seed are of looms that are drawn; add --looms N")
     from ..report import pictures
     from ..studies.tolerances.tolerances import tolerances as find
     from ..studies.tolerances.worst_cases import draw, show
@@ -130,6 +140,25 @@ def tolerances(options: argparse.Namespace) -> int:
     )
     drawn = {picture: lambda path: pictures.save(draw(found), path, found.title, inputs, options.force)}
     return _reported(found, show, drawn)
+
+
+def _shares(options: argparse.Namespace) -> int:
+    """Draw looms and show the shares of them in which claims hold."""
+    from ..studies.tolerances.draw import draw_looms
+    from ..studies.tolerances.shares import show
+
+    if options.prove or options.picture:
+        raise LoomfmuError("--prove and --picture are of worst cases; leave out --looms")
+    found = draw_looms(
+        options.scene,
+        looms=options.looms,
+        vary=options.vary,
+        set=pairs(options.overrides),
+        seed=1 if options.seed is None else options.seed,
+        share=options.share,
+        progress=True,
+    )
+    return _reported(found, show, {})
 
 
 @command(

@@ -6,20 +6,30 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ..cosim.prepared import Errors, Prepared
-from ..cosim.results import Evaluation
 from ..errors import LoomfmuError
 from ..traces import Verdict
+from .cases import Case, evaluated, worst
 from .span import Span
+
+Judged = tuple[tuple[Verdict, ...], frozenset[int]]
 
 
 class Evaluations:
     """The verdicts of a prepared scene at values of its `spans`, each place run once.
 
-    `fixed` are values that stay, as `Prepared.evaluate` takes them; `warnings` are those of the first run.
+    `fixed` are values that stay, as `Prepared.evaluate` takes them; the worst of all `cases` counts, each
+    of which takes a run. `warnings` are those of the first run.
     """
 
-    def __init__(self, loom: Prepared, spans: Sequence[Span], fixed: Mapping[str, Any] | None = None):
+    def __init__(
+        self,
+        loom: Prepared,
+        spans: Sequence[Span],
+        fixed: Mapping[str, Any] | None = None,
+        cases: Sequence[Case] = (Case(""),),
+    ):
         self._loom, self._spans, self._fixed = loom, tuple(spans), dict(fixed or {})
+        self._cases = tuple(cases)
         self._verdicts: dict[tuple[float, ...], tuple[Verdict, ...]] = {}
         self._near: dict[tuple[float, ...], frozenset[int]] = {}
         self._estimated: dict[tuple[float, ...], tuple[Verdict, ...]] = {}
@@ -27,13 +37,16 @@ class Evaluations:
 
     def __len__(self) -> int:
         """Return the number of runs."""
-        return len(self._verdicts)
+        return len(self._verdicts) * len(self._cases)
+
+    def own(self) -> tuple[Verdict, ...]:
+        """The verdicts with the scene's own values, with their numerical errors."""
+        return self._judged(self._fixed, "all")[0]
 
     def at(self, *values: float) -> tuple[Verdict, ...]:
         """The verdicts at values in SI, one for each span. Raises LoomfmuError that names them."""
         if values not in self._verdicts:
-            found = self._evaluated(values, "none")
-            self._verdicts[values], self._near[values] = found.claims, found.near
+            self._verdicts[values], self._near[values] = self._evaluated(values, "none")
         return self._verdicts[values]
 
     def near(self, *values: float) -> frozenset[int]:
@@ -44,21 +57,24 @@ class Evaluations:
     def estimated(self, *values: float) -> tuple[Verdict, ...]:
         """The same with their numerical errors, which takes further runs."""
         if values not in self._estimated:
-            self._estimated[values] = self._evaluated(values, "all").claims
+            self._estimated[values] = self._evaluated(values, "all")[0]
         return self._estimated[values]
 
-    def _evaluated(self, values: Sequence[float], errors: Errors) -> Evaluation:
+    def _evaluated(self, values: Sequence[float], errors: Errors) -> Judged:
         settings = dict(self._fixed)
         for span, value in zip(self._spans, values, strict=True):
             settings |= span.setting(value)
         try:
-            found = self._loom.evaluate(settings, errors=errors)
-            found.check_end()
+            return self._judged(settings, errors)
         except LoomfmuError as error:
             raise self._named(values, str(error)) from None
+
+    def _judged(self, settings: Mapping[str, Any], errors: Errors) -> Judged:
+        """The worst verdicts with some settings, and the claims that are near their bounds in some case."""
+        found = {case.name: evaluated(self._loom, case, errors, settings) for case in self._cases}
         if not self._verdicts:
-            self.warnings = found.warnings
-        return found
+            self.warnings = next(iter(found.values())).warnings
+        return worst(found), frozenset().union(*(each.near for each in found.values()))
 
     def _named(self, values: Sequence[float], error: str) -> LoomfmuError:
         shown = zip(self._spans, values, strict=True)

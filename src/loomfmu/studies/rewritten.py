@@ -18,7 +18,7 @@ from ..loom import weave
 from ..machines import TAKERS
 from ..own import load
 
-FILE_KEYS = {"fmu", "component", "weave", "kind"}  # of a table that may name a file
+FILE_KEYS = {"fmu", "component", "weave", "kind", "measured"}  # of a table that may name a file
 
 
 MARK = "# written by loomfmu; it is replaced only as long as nobody edits it: "  # and a digest of the rest
@@ -96,7 +96,7 @@ def text_for(scene: Scene, values: Mapping[str, Any], path: Path, description: s
 def _moved(text: str, directory: Path, folder: Path) -> str:
     """Return a scene's text whose paths from a directory are written as paths from a folder."""
     document = _tomlkit().parse(text)
-    for table in (*document.values(), *document.get("claims", ())):
+    for table in (*document.values(), *document.get("claims", ()), *document.get("tolerances", {}).values()):
         for key in FILE_KEYS & set(table if isinstance(table, dict) else ()):
             if (file := _file(key, table[key])) and not Path(file).is_absolute():
                 table[key] = _path(directory / file, folder) + table[key][len(file) :]
@@ -107,7 +107,7 @@ def _file(key: str, given: Any) -> str:
     """Return the file that a value of a table names, or an empty text."""
     if key in ("component", "kind"):
         return load.split(given)[0] if load.is_file(given) else ""
-    return given if key == "fmu" or weave.is_wif(given) else ""
+    return given if key in ("fmu", "measured") or weave.is_wif(given) else ""
 
 
 def _path(file: Path, folder: Path) -> str:

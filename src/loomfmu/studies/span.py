@@ -94,7 +94,7 @@ def span_of(scene: Scene, text: str, from_: Any = None, to: Any = None, option: 
             raise LoomfmuError(f"{option} {text}: the range is given twice; leave out from and to")
         from_, to = first, last
     variable = varied(scene, key)
-    port, value = _port(scene, variable)
+    port, value = port_of(scene, variable)
     check_effect(scene.instances, variable.targets)
     given = [None if each is None else float(variable.read(each)) for each in (from_, to)]
     usual = _usual(variable, port, value) if None in given else []
@@ -115,7 +115,7 @@ def warnings_of(spans: Sequence[Span], of_run: Sequence[str]) -> tuple[str, ...]
     return tuple(dict.fromkeys((*(doubt for span in spans for doubt in span.doubts), *of_run)))
 
 
-def set_twice(spans: Sequence[Span]) -> tuple[Span, Span, str] | None:
+def set_twice(spans: Sequence[Keyed]) -> tuple[Keyed, Keyed, str] | None:
     """The first two that set the same variable of an instance, and that variable; None where none do."""
     for one, other in combinations(spans, 2):
         if both := {*one.varied.targets} & {*other.varied.targets}:
@@ -123,7 +123,7 @@ def set_twice(spans: Sequence[Span]) -> tuple[Span, Span, str] | None:
     return None
 
 
-def _port(scene: Scene, variable: Varied) -> tuple[Port, float]:
+def port_of(scene: Scene, variable: Varied) -> tuple[Port, float]:
     """The variable in its FMU and its value in the scene. Raises LoomfmuError for what has no real values."""
     key = variable.key
     if variable.needs_scene or not variable.targets or "." not in variable.targets[0]:

@@ -88,6 +88,7 @@ def identity(scene: Scene, flavour: str) -> str:
     """A digest of all that the results of a scene depend on: texts, files, FMUs, versions."""
     parts = [version("loomfmu"), flavour, scene.text, repr(machines.MACHINES), repr(machines.HEADS)]
     parts += [scene.package_sha256] if scene.package else []
+    parts += [repr(sorted(scene.texts.items()))] if scene.texts else []  # the Python files of claims
     for name, each in scene.instances.items():  # weaves and other files have become values
         parts += [name, each.fmu.in_flavour(flavour).sha256, repr(sorted(each.values.items()))]
     return hashlib.sha256("\0".join(parts).encode()).hexdigest()

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scene_texts import claim, loom, parsed, verdicts
 
 from loomfmu import judge
-from loomfmu.cosim.claims import expressions
+from loomfmu.cosim.claims import claims, expressions
 from loomfmu.cosim.claims.expressed import Expressed
 from loomfmu.cosim.planning.requested import Requested
 from loomfmu.cosim.reading import checked_claims
@@ -77,6 +77,7 @@ def test_an_expression_has_the_unit_that_its_signals_give(text: str, unit: str) 
         ("a.x + 5 mn", "has the unknown unit 'mn'; did you mean 'm"),
         ("sin(a.x)", "has the unknown function 'sin'"),
         ("a.x.sum()", "has the unknown function 'a.x.sum'"),
+        ("5 mm (a.x)", "lacks an operator after 5 mm"),
         ("abs(a.x, b.x)", "must have 1 argument in abs(...)"),
         ("min(a.x)", "must have 2 to 9 arguments in min(...)"),
         ("a.x / 0", "divides by 0"),
@@ -223,11 +224,36 @@ def test_abs_min_and_max_are_judged_by_cases_where_they_can_be(
     assert (found.word, found.signal) == (word, signal)
 
 
-def test_a_division_by_a_signal_that_passes_0_is_refused_and_says_when() -> None:
+@pytest.mark.parametrize("at_samples", [True, False])
+def test_a_division_by_a_signal_that_passes_0_leaves_a_claim_undecided_and_says_when(
+    at_samples: bool,
+) -> None:
+    found = judge(run(), kind="above", signal="2 + b.x / a.x", bound=0, at_samples=at_samples)
     # the sample 100 is at a quarter of a turn, to rounding
-    where = f"divides by a.x, which is or passes 0 at {TIME[100]:.6g} s, 90.000 deg, rev. 1"
-    with pytest.raises(LoomfmuError, match=where):
-        judge(run(), kind="above", signal="b.x / a.x", bound=0)
+    where = f"{TIME[100]:.6g} s, 90.000 deg, rev. 1"
+    assert (found.word, found.note) == ("undecided", f"it divides by a.x, which is or passes 0 at {where}")
+    assert math.isnan(found.worst) and math.isnan(found.distance)
+
+
+def test_the_worst_case_gives_the_value_and_any_open_one_leaves_it_undecided() -> None:
+    found = judge(run(), kind="below", signal="max(b.x, c.share * (1 m))", bound="4 m")
+    assert found.word == "undecided" and "(c.share * 1 m) is known only at the samples" in found.note
+    assert found.worst == pytest.approx(3.0, rel=1e-9)  # of b.x: near its extreme the quintic is exact to h^6
+    failing = judge(run(), kind="below", signal="max(b.x, c.share * (1 m))", bound="2 m")
+    assert failing.word == "FAILS" and failing.worst == found.worst
+
+
+def test_a_case_that_is_farther_from_the_bound_but_less_sure_leaves_it_undecided() -> None:
+    unsure = {
+        "a.x": ("m", np.cos(TIME), {"rate": "v", "beside": Beside(error="off")}),
+        "a.off": ("m", 3.0 + 0.0 * TIME),
+    }
+    for trace, word in ((run(), "holds"), (run(**unsure), "undecided")):
+        asked = claims.read({"kind": "below", "signal": "max(a.x, b.x)", "bound": "3.5 m"}, trace.unit)
+        found = asked.settled(trace, asked.judge(trace), 0.0, 1e-12, 0.0)
+        # b.x comes to 3 m, 0.5 m from the bound; a.x to 1 m, but it may be off by 3 m
+        assert (found.word, found.worst) == (word, pytest.approx(3.0, rel=1e-9))
+    assert found.error == pytest.approx(3.0)
 
 
 def test_samples_alone_are_judged_if_asked() -> None:

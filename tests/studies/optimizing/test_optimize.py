@@ -293,7 +293,7 @@ def test_a_goal_may_be_the_distance_of_a_claim() -> None:
 
 
 def test_a_goal_of_a_signal_is_spelt_and_has_an_error() -> None:
-    """The lowest acceleration is that of finer samples, but for what these miss: the curve between them is known."""
+    """The lowest acceleration is that of finer samples, but for what these miss."""
     text = """maximise = "lowest heald_1.acceleration"
 [choices]
 "dobby.law" = ["sloped_line", "sloped_sine"]"""

@@ -10,7 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ...errors import LoomfmuError, listed
+from ...errors import listed
 from ...traces import Signals
 from ...traces.extended import Extended
 from ...traces.signals import Floats
@@ -22,11 +22,14 @@ RATES = "rate of ", "second rate of "
 
 
 class Expressed(Extended):
-    """A run with one expression more, under its text. Raises LoomfmuError where it divides by 0."""
+    """A run with one expression more, under its text.
+
+    Where it divides by 0 it has no values, and `why` says so; the text is empty otherwise.
+    """
 
     def __init__(self, run: Signals, expression: Expression):
         super().__init__(run, {}, {}, expression.unit)
-        self._node, self._display = expression.node, self._shown_in(expression)
+        self._node, self._display, self.why = expression.node, self._shown_in(expression), ""
         values, *rates = self._jet(self._node)
         names = [str(expression), *(f"{each}{expression}" for each in RATES)]
         self._made = dict(zip(names, [values, *rates], strict=False))
@@ -74,10 +77,8 @@ class Expressed(Extended):
             angle, turn = self.shaft_angle[place], 2.0 * np.pi
             revolution = int(angle // turn) + 1 if "shaft.angle" in self._run else None
             where = place_text(float(self.time[place]), float(angle % turn), revolution)
-            raise LoomfmuError(
-                f"{self.name}: the expression divides by {node.parts[1].text}, which is or passes 0 at"
-                f" {where}"
-            )
+            self.why = f"it divides by {node.parts[1].text}, which is or passes 0 at {where}"
+            return [np.full(len(values), np.nan)]
         found = [above[0] / values]
         if len(above) > 1 and len(below) > 1 and not _may_pass_zero(self.time, below):
             found.append((above[1] - found[0] * below[1]) / values)

@@ -47,32 +47,45 @@ class _OfExpression(Bounded, kind=False):
 
     def _alone(self, trace: Signals) -> Verdict:
         run = Expressed(trace, self._expression)
-        return run_of(trace).verdict(run, super().question(run), self.name)
+        found = run_of(trace).verdict(run, super().question(run), self.name)
+        return replace(found, holds=False, decided=False, error=np.inf, note=run.why) if run.why else found
 
-    def _worst(self, trace: Signals) -> tuple["_OfExpression", Verdict]:
-        """Return the case with the worst value; if this holds, one that does not, if there is one."""
-        judged = [(case, case._alone(trace)) for case in self._cases]
-        judged.sort(key=lambda each: (not np.isnan(each[1].worst), self.sense * each[1].worst))
-        failing = [each for each in judged if not each[1].holds]
-        return judged[0] if judged[0] in failing or not failing else failing[0]
+    def _judged(self, trace: Signals) -> list[tuple["_OfExpression", Verdict]]:
+        return [(case, case._alone(trace)) for case in self._cases]
 
     def judge(self, trace: Signals) -> Verdict:
-        return replace(self._worst(trace)[1], signal=str(self.signal))
+        return self._whole([verdict for _case, verdict in self._judged(trace)])
+
+    def _whole(self, cases: list[Verdict]) -> Verdict:
+        """Return the verdict of the worst value; if that holds, it is as undecided as any other case."""
+        worst, open_ = min(cases, key=self._rank), [each for each in cases if not each.holds]
+        if worst.holds and open_:
+            worst = replace(worst, holds=False, decided=False, error=open_[0].error, note=open_[0].note)
+        return replace(worst, signal=str(self.signal))
+
+    def _rank(self, verdict: Verdict) -> tuple[bool, float]:
+        return not np.isnan(verdict.worst), self.sense * verdict.worst
 
     def settled(
         self, trace: Signals, verdict: Verdict, spread: float, share: float, scatter: float
     ) -> Verdict:
-        case = self._worst(trace)[0]
-        run = Expressed(trace, case._expression)
-        asked, own = Bounded.question(case, run), replace(verdict, signal=case.signal)
-        noise = run.noise(share, scatter)  # the difference of two values is no surer than these
-        found = run_of(trace).settled(run, asked, own, spread, noise, share, 0.0)
-        return replace(found, signal=verdict.signal)
+        return self._whole(
+            [case._settled(trace, each, spread, share, scatter) for case, each in self._judged(trace)]
+        )
+
+    def _settled(
+        self, trace: Signals, verdict: Verdict, spread: float, share: float, scatter: float
+    ) -> Verdict:
+        """Return the verdict on this case alone; a difference of two values is no surer than these."""
+        run = Expressed(trace, self._expression)
+        if run.why:
+            return verdict
+        noise, asked = run.noise(share, scatter), super().question(run)
+        return run_of(trace).settled(run, asked, verdict, spread, noise, share, 0.0)
 
     def left_by_model(self, trace: Signals, verdict: Verdict) -> float:
-        case = self._worst(trace)[0]
+        case, own = min(self._judged(trace), key=lambda each: self._rank(each[1]))
         run = Expressed(trace, case._expression)
-        own = replace(verdict, signal=case.signal)
         return run_of(trace).model_error(run, Bounded.question(case, run), own)
 
     def conditions(self, run: Wired) -> tuple[Condition, ...]:

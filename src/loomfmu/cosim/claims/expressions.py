@@ -281,6 +281,8 @@ class _Reader:
 
     def _call(self, tree: ast.Call, levels: int) -> Node:
         name = tree.func.id if isinstance(tree.func, ast.Name) else ast.unparse(tree.func)
+        if name in self._quantities:
+            raise self._refused(f"lacks an operator after {self._quantities[name].text}")
         if name not in FUNCTIONS:
             raise self._refused(f"has the unknown function {shown(name)}{suggestion(name, FUNCTIONS)}")
         fewest, most = FUNCTIONS[name]

@@ -18,6 +18,7 @@ from .graph import Drive, Wire, usual_coupling
 from .instance_tables import overridden, read
 from .instances import Instance
 from .settings import KEYS, LAGGED, UNIFORM, Times, replaced, settings_of, texts_in, toml
+from .tolerances import ends_of
 from .wiring import drives_of, wires_of
 
 
@@ -25,14 +26,14 @@ from .wiring import drives_of, wires_of
 class Scene:
     """A scene, checked against the FMUs it uses: every name is known, every value in SI and in bounds.
 
-    A period is a revolution of the main shaft, or a second in a scene that runs by seconds and has a `step`:
-    the run takes `periods` of them. `coupling` is how loops are closed, `grid` where the steps are, with
-    `coarse_steps_per_revolution` outside of the windows that the claims look into. With an `accuracy` a run
-    chooses its steps. `file` or the system package `package` is what it was read from, `package_sha256` is
-    the package's, `texts` are those of the other files that its text names, `overrides` the values that
-    differ from it, `notes` what the user is to be warned of. `tolerances` are the ends between which values
-    may lie, as the scene states them. `isolated` says whether FMUs run in processes of their own; by default
-    third-party ones do.
+    A period is a revolution of the main shaft, or a second in a scene that runs by seconds and has a
+    `step`: the run takes `periods` of them. `coupling` is how loops are closed, `grid` where the steps are,
+    with `coarse_steps_per_revolution` outside of the windows that the claims look into. With an `accuracy`
+    a run chooses its steps. `file` or the system package `package` is what it was read from,
+    `package_sha256` is the package's, `texts` are those of the other files that its text names, `overrides`
+    the values that differ from it, `notes` what the user is to be warned of. `tolerances` are the ends
+    between which values may lie, or tables of their distributions, as the scene states them. `isolated`
+    says whether FMUs run in processes of their own; by default third-party ones do.
     A call of such an FMU may take `step_timeout`, and a whole run `run_timeout` [s]. Where an FMU `may_end`
     the run early, claims are judged on what there is.
     """
@@ -49,7 +50,7 @@ class Scene:
     drives: list[Drive]
     record: list[str]
     claims: list[dict[str, Any]]
-    tolerances: dict[str, tuple[Any, Any]] = field(default_factory=dict)
+    tolerances: dict[str, Any] = field(default_factory=dict)
     step: float | None = None
     coupling: str = LAGGED
     grid: str = UNIFORM
@@ -277,19 +278,20 @@ def _check_single(scene: Scene) -> None:
 
 def _check_tolerances(scene: Scene) -> None:
     """Refuse tolerances of what `--set` cannot set either, and ends that are not among its values."""
-    for key, ends in scene.tolerances.items():
+    for key, given in scene.tolerances.items():
         try:
             pairs = overridden(scene.instances, key)
             if not pairs[0][0]:
                 raise LoomfmuError(f"{key} cannot have a tolerance, only parameters and inputs can")
             check_free(scene, pairs)
-            for owner, variable in pairs:
+            ends = ends_of(given)
+            for owner, variable in pairs if ends else ():
                 probe = Instance(owner, scene.instances[owner].fmu)
                 found = []
-                for end in ends:
+                for end in ends or ():
                     probe.set(variable, end)
                     found.append(probe.values.get(probe.fmu.name_of(variable), 0.0))
-                if all(isinstance(each, float) for each in found) and not found[0] < found[1]:
+                if ends and all(isinstance(each, float) for each in found) and not found[0] < found[1]:
                     raise LoomfmuError(f"{key}: the range from {ends[0]} to {ends[1]} is empty")
         except LoomfmuError as error:
             raise LoomfmuError(f"tolerances: {error}") from None

@@ -10,6 +10,7 @@ from typing import Any
 from ... import units
 from ...errors import LoomfmuError, check_text, listed, shown, suggestion
 from ...own.declared import ISOLATED
+from .tolerances import tolerances_of
 
 COARSE = "coarse_steps_per_revolution"
 ACCURACY = "accuracy"  # which chooses the steps
@@ -128,7 +129,7 @@ def settings_of(
         "description": text(tables, "description").strip(),
         "record": _recorded(tables.get("record", ["*"]), outputs),
         "claims": _claims(tables.get("claims", [])),
-        "tolerances": _tolerances(tables.get("tolerances", {})),
+        "tolerances": tolerances_of(tables.get("tolerances", {})),
         "coupling": choice(tables, "coupling", COUPLINGS) if "coupling" in tables else None,
         "grid": choice(tables, "grid", GRIDS),
         "accuracy": _accuracy(tables, times),
@@ -197,25 +198,6 @@ def _claims(tables: Any) -> list[dict[str, Any]]:
     if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
         raise LoomfmuError("claims are written as [[claims]] tables")
     return tables
-
-
-def _tolerances(table: Any) -> dict[str, tuple[Any, Any]]:
-    """The ends between which values may lie, by their keys."""
-    if not isinstance(table, dict):
-        raise LoomfmuError(
-            'tolerances are a table, such as [tolerances] "belt.guide_clearance" = ["0.2 mm", "0.5 mm"]'
-        )
-    for key, ends in table.items():
-        if isinstance(ends, dict):
-            name = f"{key}.{next(iter(ends), 'VARIABLE')}"
-            raise LoomfmuError(
-                f'tolerances: write the whole key in quotes, such as "{name}" = ["LOW", "HIGH"]'
-            )
-        if not (isinstance(ends, list) and len(ends) == 2):
-            raise LoomfmuError(
-                f'tolerances: {key} = {shown(ends)} must be two ends such as ["0.2 mm", "0.5 mm"]'
-            )
-    return {key: (ends[0], ends[1]) for key, ends in table.items()}
 
 
 def check_times(times: Times, speed: float | None) -> None:

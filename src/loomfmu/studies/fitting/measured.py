@@ -84,24 +84,29 @@ def _trace(path: Path, signals: Sequence[str]) -> Measured:
         return Measured(path, over, along, {name: np.array(trace[name], float) for name in signals})
 
 
-def _table(path: Path, scene: Scene, signals: Sequence[str]) -> Measured:
+def rows_of(path: Path, form: str = FORM) -> list[Row]:
+    """The rows of a CSV file, its heading first, without comments; `form` says how to name columns."""
     numbered = [
         (number, line)
         for number, line in enumerate(text_of(path).splitlines(), start=1)
         if line.strip() and not line.startswith("#")
     ]
     if not numbered:
-        raise LoomfmuError(f"{path}: the file is empty; {FORM}")
+        raise LoomfmuError(f"{path}: the file is empty; {form}")
     numbers, lines = zip(*numbered, strict=True)
     if ";" in lines[0]:
         raise LoomfmuError(f"{path}: separate the columns with commas, and write decimals with points")
     reader = csv.reader(lines)
     try:
-        heading, *rows = ((f"{path}: line {numbers[reader.line_num - 1]}", row) for row in reader)
+        return [(f"{path}: line {numbers[reader.line_num - 1]}", row) for row in reader]
     except csv.Error as error:
         raise LoomfmuError(f"{path}: line {numbers[reader.line_num - 1]}: not a table ({error})") from None
+
+
+def _table(path: Path, scene: Scene, signals: Sequence[str]) -> Measured:
+    heading, *rows = rows_of(path)
     over, factor, named = _headings(*heading, scene)
-    values = _values(heading[1], rows)
+    values = values_of(heading[1], rows)
     columns = {name: values[:, place] * scale for name, (place, scale) in named.items()}
     if missing := [name for name in signals if name not in columns]:
         raise LoomfmuError(f"{path}: there is no column {missing[0]!r}; it has {listed(columns)}")
@@ -132,22 +137,22 @@ def _headings(
     where: str, heading: Sequence[str], scene: Scene
 ) -> tuple[str, float, dict[str, tuple[int, float]]]:
     """Return the axis of the first column with its factor, and of each signal its column and factor to SI."""
-    over, unit = _named(where, heading[0])
+    over, unit = named_column(where, heading[0])
     if over not in ALONG:
         raise LoomfmuError(f"{where}: the first column is {shown(over)}, not shaft_angle or time; {FORM}")
     named: dict[str, tuple[int, float]] = {}
     for place, text in enumerate(heading[1:], start=1):
-        name, stated = _named(where, text)
+        name, stated = named_column(where, text)
         if name in named:
             raise LoomfmuError(f"{where}: two columns are called {name}")
         port = output_port(scene, name, f"{where}")
-        named[name] = place, _factor(where, name, stated, port.unit)
+        named[name] = place, factor_to(where, name, stated, port.unit)
     if not named:
         raise LoomfmuError(f"{where}: there is no column beside {over}; {FORM}")
-    return over, _factor(where, over, unit, ALONG[over]), named
+    return over, factor_to(where, over, unit, ALONG[over]), named
 
 
-def _named(where: str, text: str) -> tuple[str, str]:
+def named_column(where: str, text: str) -> tuple[str, str]:
     """A column's name and unit. Raises LoomfmuError for one without."""
     match = _COLUMN.fullmatch(text.strip())
     if match is None:
@@ -158,7 +163,7 @@ def _named(where: str, text: str) -> tuple[str, str]:
     return match.group(1).strip(), match.group(2).strip()
 
 
-def _factor(where: str, name: str, stated: str, wanted: str) -> float:
+def factor_to(where: str, name: str, stated: str, wanted: str) -> float:
     """Return the factor from the stated unit. Raises LoomfmuError for a unit that does not fit."""
     misfit = f"{where}: column {name} is in {shown(stated)}, which does not fit {units.fitted(wanted)}"
     if wanted not in units.UNITS:  # a third-party FMU's own
@@ -174,7 +179,8 @@ def _factor(where: str, name: str, stated: str, wanted: str) -> float:
     return given.factor / units.unit(wanted).factor
 
 
-def _values(heading: Sequence[str], rows: Iterable[Row]) -> Floats:
+def values_of(heading: Sequence[str], rows: Iterable[Row]) -> Floats:
+    """The numbers in rows, NaN for empty cells. Raises LoomfmuError for anything else."""
     found = []
     for where, row in rows:
         if len(row) != len(heading):

@@ -20,6 +20,8 @@ from ...cosim.scenes.scene import Scene
 from ...display.progress import progress as progress_bar
 from ...errors import LoomfmuError, listed, shown
 from ...traces import Verdict
+from ..cases import Case
+from ..corners import corners_of
 from ..evaluations import Evaluations
 from ..span import Span, set_twice, span_of, warnings_of
 from .proven import proven
@@ -39,29 +41,35 @@ def limits_of(
     points: int,
     fixed: dict[str, Any] | None = None,
     advance: Callable[[int], None] = lambda _runs: None,
+    cases: Sequence[Case] = (Case(""),),
 ) -> Limits:
-    """Find the limits of a prepared scene; `fixed` are values that stay, `advance` counts points."""
+    """Find the limits of a prepared scene, in the worst of some cases.
+
+    `fixed` are values that stay, `advance` counts points.
+    """
     if not loom.scene.claims:
         raise LoomfmuError(f"{loom.scene.name}: the scene has no claims, so there is no limit to find")
-    own = loom.evaluate(fixed)  # a key may set several values that differ in the scene
-    own.check_end()
-    runs = _Runs(loom, [span], fixed)
+    runs = _Runs(loom, [span], fixed, cases)
+    own = runs.own()  # a key may set several values that differ in the scene
+    of_run = runs.warnings
     grid = span.points(points)
     runs.scan(grid, advance)
     values = set(grid)
-    dependent = [runs.depends(number, grid) for number in range(len(own.claims))]
+    dependent = [runs.depends(number, grid) for number in range(len(own))]
     for number, depends in enumerate(dependent):
         if depends:
             values |= set(_touched(runs.distance(number), grid))
     tried = sorted(values)
     found = [
         _claim_limits(loom.scene.claims[number], verdict, number, runs, tried, depends)
-        for number, (verdict, depends) in enumerate(zip(own.claims, dependent, strict=True))
+        for number, (verdict, depends) in enumerate(zip(own, dependent, strict=True))
     ]
     resolution = (span.high - span.low) / (points - 1)
-    ranges, warnings = _common(found, span), warnings_of([span], own.warnings)
+    ranges, warnings = _common(found, span), warnings_of([span], of_run)
     title = heading(loom.scene, [span.key])
-    return Limits(title, span, resolution, tuple(found), ranges, len(runs) + 1, warnings)
+    if len(cases) > 1:
+        title += f", in the worst of {len(cases)} cases"
+    return Limits(title, span, resolution, tuple(found), ranges, len(runs) + len(cases), warnings)
 
 
 class _Runs(Evaluations):
@@ -230,6 +238,7 @@ def limit(
     set: dict[str, Any] | None = None,
     points: int = POINTS,
     rows: None = None,
+    corners: bool = False,
     prove: bool = False,
     progress: bool = False,
 ) -> Limits: ...
@@ -245,6 +254,7 @@ def limit(
     set: dict[str, Any] | None = None,
     points: int = POINTS,
     rows: int | None = None,
+    corners: bool = False,
     prove: bool = False,
     progress: bool = False,
 ) -> Limits | Boundary: ...
@@ -259,6 +269,7 @@ def limit(
     set: dict[str, Any] | None = None,  # the command's own word
     points: int = POINTS,
     rows: int | None = None,
+    corners: bool = False,
     prove: bool = False,
     progress: bool = False,
 ) -> Limits | Boundary:
@@ -276,6 +287,8 @@ def limit(
         set: values that differ from the scene's
         points: how many equally spaced values are tried first
         rows: how many values of the second variable there are, 11 by default
+        corners: find limits that also hold at all corners of the scene's tolerances, of other values than
+            those that vary
         prove: prove each range for all shaft angles, as `loomfmu.prove`; of one variable only
         progress: show a progress bar on a terminal or in a notebook
 
@@ -299,29 +312,42 @@ def limit(
         raise LoomfmuError(
             "limits are proven over one variable; loomfmu prove --over proves claims over several"
         )
+    if prove and corners:
+        raise LoomfmuError("limits at corners are not proven; loomfmu tolerances --prove proves worst cases")
     points, rows = whole_points(points), whole_points(ROWS if rows is None else rows, "rows", 2)
     with prepare(scene, set=set) as loom:
         protected(loom.scene)
         first = span_of(loom.scene, keys[0], from_, to)
+        spans = [first, *(span_of(loom.scene, key) for key in keys[1:])]
+        varying = [target for each in spans for target in each.varied.targets]
+        cases = corners_of(loom.scene, varying) if corners else [Case("")]
         if len(keys) == 1:
             with progress_bar(f"limits of {first.key}", points, wanted=progress) as advance:
-                found = limits_of(loom, first, points, advance=advance)
+                found = limits_of(loom, first, points, None, advance, cases)
             return proven(loom, found) if prove else found
-        second = span_of(loom.scene, keys[1])
+        second = spans[1]
         if twice := set_twice([first, second]):
             raise LoomfmuError(f"{first.key} and {second.key} both set {twice[2]}")
         with progress_bar(f"limits of {first.key}", points * rows, wanted=progress) as advance:
-            return _boundary(loom, first, second, points, rows, advance)
+            return _boundary(loom, first, second, points, rows, advance, cases)
 
 
 def _boundary(
-    loom: Prepared, first: Span, second: Span, points: int, rows: int, advance: Callable[[int], None]
+    loom: Prepared,
+    first: Span,
+    second: Span,
+    points: int,
+    rows: int,
+    advance: Callable[[int], None],
+    cases: Sequence[Case],
 ) -> Boundary:
     values = second.points(rows)
     found = []
     for value in values:
         try:
-            found.append(limits_of(loom, first, points, second.setting(value), advance))
+            found.append(limits_of(loom, first, points, second.setting(value), advance, cases))
         except LoomfmuError as error:
             raise LoomfmuError(f"at {second.key} = {second.show(value)}: {error}") from None
-    return Boundary(heading(loom.scene, [first.key, second.key]), first, second, tuple(values), tuple(found))
+    title = heading(loom.scene, [first.key, second.key])
+    title += f", in the worst of {len(cases)} cases" * (len(cases) > 1)
+    return Boundary(title, first, second, tuple(values), tuple(found))

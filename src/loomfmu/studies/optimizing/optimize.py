@@ -14,6 +14,7 @@ from ... import units
 from ...cosim.claims.claims import called
 from ...cosim.prepared import Prepared
 from ...cosim.reading import protected
+from ...cosim.results import Evaluation
 from ...cosim.scenes.scene import files_of
 from ...display.printed import as_csv
 from ...display.progress import progress as progress_bar
@@ -26,13 +27,14 @@ from ...sweeps.varied import labelled
 from ...sweeps.worker import job_of
 from ...traces import Verdict
 from .. import rewritten
+from ..cases import evaluated, worst
 from . import study as studies
 from .binding import binding, indifferent
 from .optimum import Best, Optimum, front_table
 from .runs import Design, Point, Runs
 from .search import expected, generation, searched
 from .start import SAME, limits_of, own_point
-from .study import Study
+from .study import Goal, Study
 
 
 def optimize(
@@ -67,17 +69,18 @@ def optimize(
     need(path, "study", *["sweep"] * bool(scheduler))
     job = replace(job_of(study), errors="none", measures=study.measures)  # a search goes up to the bounds
     files = Files(path_of(output, "output") if output is not None else Path("results") / study.name)
-    fingerprint = hashlib.sha256(f"{study.text}\0{job.identity}".encode()).hexdigest()
+    cases = repr(study.cases) if study.cases else ""  # their ends may be of a file of measured values
+    fingerprint = hashlib.sha256(f"{study.text}\0{job.identity}{cases}".encode()).hexdigest()
     with resumable(files.directory, "runs"), ExitStack() as stack:
         own = own_point(study)
         try:  # what could not be run or written is refused now, not after the search
             files.check(study, own)
             scene = protected(study.scene)
-            tried = Prepared(scene, None, study.flavour, (), study.measures).evaluate(errors="none")
-            tried.check_end()
+            loom = Prepared(scene, None, study.flavour, (), study.measures)
+            tried = [evaluated(loom, case, "none") for case in study.situations]
         except LoomfmuError as error:
             raise LoomfmuError(f"{path}: {error}") from None
-        verdicts = tried.claims
+        verdicts = tried[0].claims
         limits = limits_of(study, verdicts, path)
         inputs = [path, *files_of(study.scene)]
         stack.enter_context(owned(files, "study", study.title, fingerprint, restart, inputs))
@@ -164,14 +167,20 @@ def _written(runs: Runs, design: Design, names: Sequence[str], path: Path) -> Be
     """A best design, written as a scene and judged as that scene runs."""
     study = runs.study
     rewritten.write(study.scene, study.written(design.values), path, True, _origin(study, path))
+    loom = Prepared(path, None, study.flavour, (), study.measures)
     # with their errors, as any run of it has them
-    found = Prepared(path, None, study.flavour, (), study.measures).evaluate()
-    verdicts, of_kind = found.claims, {"signal": found.measured, "claim": found.claims}
-    errors = [of_kind[goal.kind][goal.place].error if goal.kind in of_kind else 0.0 for goal in study.goals]
+    cases = {case.name: evaluated(loom, case, "all") for case in study.situations}
+    verdicts = worst(cases)
+    errors = [max(_error_of(goal, each) for each in cases.values()) for goal in study.goals]
     values = dict(zip((each.key for each in study.variables), design.values, strict=True))
     goals = [goal.sign * float(height) for goal, height in zip(study.goals, design.heights, strict=True)]
     limits = binding(runs, design, names, np.array([each.bound for each in verdicts]))
     return Best(values, tuple(goals), tuple(errors), verdicts, tuple(limits), indifferent(runs, design), path)
+
+
+def _error_of(goal: Goal, found: Evaluation) -> float:
+    of_kind = {"signal": found.measured, "claim": found.claims}
+    return of_kind[goal.kind][goal.place].error if goal.kind in of_kind else 0.0
 
 
 def _origin(study: Study, path: Path) -> str:
@@ -179,7 +188,8 @@ def _origin(study: Study, path: Path) -> str:
     which = "The best design" if len(study.goals) == 1 else f"{path.stem}: a design of the front"
     goals = listed(goal.words for goal in study.goals)
     changed = listed([*study.fixed, *(each.key for each in study.variables)])
-    return f"{which} of {study.name}.toml ({goals}): {study.path.name} with other values of {changed}."
+    worst = f" in the worst of {len(study.cases)} cases" if study.cases else ""
+    return f"{which} of {study.name}.toml ({goals}{worst}): {study.path.name} with other values of {changed}."
 
 
 def _constant(study: Study, designs: Sequence[Design]) -> tuple[str, ...]:

@@ -207,10 +207,15 @@ def _claim_rows(found: Optimum, best: Best) -> list[tuple[str, ...]]:
             each.shown_worst,
             each.shown(each.bound),
             each.shown_distance,
-            _note(found, best, number),
+            "; ".join(filter(None, (_case(found, each), _note(found, best, number)))),
         )
         for number, each in enumerate(best.verdicts)
     ]
+
+
+def _case(found: Optimum, verdict: Verdict) -> str:
+    """The case in which a claim is worst."""
+    return verdict.note.partition(";")[0] if found.study.cases else ""
 
 
 def front_table(found: Optimum) -> Table:
@@ -241,7 +246,9 @@ def conclusion(found: Optimum) -> Iterator[str]:
         goal = found.study.goals[0]
         error = shown_error(goal, best, 0)
         known = f" ({error})" if error else ""
-        yield f"{goal.words[0].upper()}{goal.words[1:]}: {shown_goal(goal, best, 0)}{known}."
+        cases = len(found.study.cases)
+        worst = f", in the worst of {cases} cases" if cases else ""
+        yield f"{goal.words[0].upper()}{goal.words[1:]}: {shown_goal(goal, best, 0)}{known}{worst}."
         if best.limits:
             yield f"It is limited by {' and '.join(map(_in_words, best.limits))}."
             yield from _gains(found, best)

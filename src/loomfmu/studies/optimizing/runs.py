@@ -2,8 +2,8 @@
 
 import json
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from io import BufferedRandom
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -53,6 +53,29 @@ class Design:
         short = float(np.sum(np.where(np.isnan(self.room), 1.0, np.maximum(0.0, -self.room))))
         return 0.0 if self.allowed else max(short, 1e-12)
 
+    @classmethod
+    def worst(cls, cases: Mapping[str, "Design"]) -> "Design":
+        """One design in all its cases, by their names: its worst goals, and of each claim the least room."""
+        (first, *others), every = cases.values(), list(cases.values())
+        if not others:
+            return first
+        room, distances = (
+            np.array([getattr(each, name) for each in every]) for name in ("room", "distances")
+        )
+        least = np.argmin(np.where(np.isnan(room), -np.inf, room), axis=0), np.arange(room.shape[1])
+        return replace(
+            first,
+            heights=np.max([each.heights for each in every], axis=0),
+            room=room[least],
+            distances=distances[least],
+            holds=all(each.holds for each in every),
+            error=next((f"in {name}: {each.error}" for name, each in cases.items() if each.error), ""),
+            undecided=tuple(
+                next(filter(None, notes), "")
+                for notes in zip(*(each.undecided for each in every), strict=True)
+            ),
+        )
+
 
 class Runs:
     """Runs designs in a pool. What the file `path` has of an earlier search is not run again."""
@@ -83,17 +106,34 @@ class Runs:
             tuple(each.value(number) for each, number in zip(variables, point, strict=True))
             for point in points
         ]
-        if left := [values for values in dict.fromkeys(wanted) if values not in self._results]:
+        rows = (row for values in dict.fromkeys(wanted) for row in self._rows(values))
+        if left := [row for row in rows if row not in self._results]:
             self._run(left)
         for point, values in zip(points, wanted, strict=True):
             if values not in self.designs:
-                self.designs[values] = self._design(point, values, self._results[values])
+                self.designs[values] = self._worst(point, values)
                 self._advance(1)
         return [self.designs[values] for values in wanted]
 
+    def _rows(self, values: tuple[Value, ...]) -> list[tuple[Value, ...]]:
+        """The rows of a design: its values, and in a study with cases the number of each."""
+        cases = range(len(self.study.cases))
+        return [(*values, number) for number in cases] or [values]
+
+    def _settings(self, row: tuple[Value, ...]) -> dict[str, Any]:
+        size = len(self.study.variables)
+        values, case = row[:size], self.study.situations[int(row[size]) if len(row) > size else 0]
+        return {**self.study.fixed, **self.study.setting(values), **case.settings}
+
+    def _worst(self, point: Point, values: tuple[Value, ...]) -> Design:
+        cases = zip(self.study.situations, self._rows(values), strict=True)
+        return Design.worst(
+            {case.name: self._design(point, values, self._results[row]) for case, row in cases}
+        )
+
     def _run(self, left: list[tuple[Value, ...]]) -> None:
         def settings(rows: range) -> list[dict[str, Any]]:
-            return [self.study.fixed | self.study.setting(left[row]) for row in rows]
+            return [self._settings(left[row]) for row in rows]
 
         def keep(rows: range, batch: Batch) -> None:
             try:

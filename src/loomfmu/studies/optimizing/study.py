@@ -15,10 +15,12 @@ from ...cosim.scenes.settings import read_table
 from ...errors import LoomfmuError, listed, shown, suggestion
 from ...sweeps.axes import Range, flattened, grid_axis, range_of, whole
 from ...sweeps.header import HEAD, Header, check_by_scene, read, variables
-from ...sweeps.varied import Keyed, Value, shown_unit
+from ...sweeps.varied import Keyed, Value, shown_unit, varied
+from ..cases import Case
+from .cases import cases_of
 
 WAYS = {"minimise": 1.0, "maximise": -1.0}  # what a goal is multiplied by to be made small
-KEYS = (*HEAD, *WAYS, "safety", "except", "ranges", "choices", "search")
+KEYS = (*HEAD, *WAYS, "safety", "except", "ranges", "choices", "cases", "tolerances", "search")
 USUAL = {"runs": 2000, "seed": 1, "points": 11}  # of the search
 SEARCH = {key: partial(whole, low=low) for key, low in {"runs": 50, "seed": 0, "points": 3}.items()}
 MOST_GOALS = 3
@@ -83,7 +85,8 @@ class Study(Header):
     bounds.
 
     `required` says of each claim whether it must hold; `shares` and `amounts` are those distances: as a share
-    of its bound, and in its unit.
+    of its bound, and in its unit. Each design is run in all `cases`, and the worst counts; without any it is
+    run once.
     """
 
     variables: tuple[Variable, ...]
@@ -93,6 +96,7 @@ class Study(Header):
     shares: tuple[float, ...]
     amounts: tuple[str, ...]
     search: dict[str, int]
+    cases: tuple[Case, ...] = ()
 
     @cached_property
     def continuous(self) -> list[int]:
@@ -123,7 +127,12 @@ class Study(Header):
     def notes(self) -> tuple[str, ...]:
         """The warnings for the user."""
         doubts = (doubt for variable in self.variables if variable.range for doubt in variable.range.doubts)
-        return (*self.scene.notes, *doubts)
+        return (*self.scene.notes, *doubts, *(doubt for case in self.cases for doubt in case.doubts))
+
+    @property
+    def situations(self) -> tuple[Case, ...]:
+        """The cases in which a design is run, one without a name if the study states none."""
+        return self.cases or (Case(""),)
 
     def setting(self, values: Sequence[Value]) -> dict[str, Any]:
         """Return the settings of the scene for values of the variables."""
@@ -149,6 +158,8 @@ def _parse(head: Header, tables: dict[str, Any]) -> Study:
     goals = _goals(head.scene, tables, found)
     required = required_of(head.scene, tables.get("except", []))
     shares, amounts = safety_of(head.scene, tables.get("safety", 0.0), required)
+    taken = {target for each in found for target in each.varied.targets}
+    taken |= {target for key in head.fixed for target in varied(head.scene, key).targets}
     signals = tuple(goal.name for goal in goals if goal.kind == "signal")
     return Study(
         **vars(head),
@@ -159,6 +170,7 @@ def _parse(head: Header, tables: dict[str, Any]) -> Study:
         shares=shares,
         amounts=amounts,
         search=USUAL | read_table(tables.get("search", {}), "search", SEARCH),
+        cases=cases_of(head, tables, taken),
     )
 
 

@@ -14,10 +14,14 @@ from ...cosim.reading import protected
 from ...cosim.run import prepare
 from ...cosim.scenes.headings import heading
 from ...cosim.scenes.scene import Scene
+from ...cosim.scenes.tolerances import ends_of
 from ...display.progress import progress as progress_bar
 from ...errors import LoomfmuError
+from ...sweeps.varied import Keyed
+from ...units import Si
 from ..evaluations import Evaluations
 from ..span import Span, set_twice, span_of, warnings_of
+from .distributions import distribution_of
 from .proven import proven
 from .results import SAME, Cost, Tolerances, WorstCase
 
@@ -55,17 +59,11 @@ def tolerances(
         protected(loom.scene)
         loaded = loom.scene
         keys = [vary] if isinstance(vary, str) else list(vary)
+        check_asked(loaded, keys)
         given = [(key, None, None) for key in keys] or [
-            (key, *ends) for key, ends in loaded.tolerances.items()
+            (key, *_ends(loaded, key)) for key in loaded.tolerances
         ]
-        if not given:
-            raise LoomfmuError(
-                f'{loaded.name}: there are no tolerances; write [tolerances] "belt.guide_clearance" ='
-                ' ["0.2 mm", "0.5 mm"], or --vary belt.guide_clearance=0.2mm..0.5mm'
-            )
-        if not loaded.claims:
-            raise LoomfmuError(f"{loaded.name}: the scene has no claims, so there is no worst case")
-        spans = [_span(loaded, *each) for each in given]
+        spans = [tolerance_of(loaded, *each) for each in given]
         _check(spans)
         points = _points(spans)
         with progress_bar("worst cases", len(points) + len(loaded.claims), wanted=progress) as advance:
@@ -73,7 +71,31 @@ def tolerances(
         return replace(found, proofs=proven(loom, spans, found.claims)) if prove else found
 
 
-def _span(scene: Scene, key: str, low: Any, high: Any) -> Span:
+def check_asked(scene: Scene, keys: Sequence[str]) -> None:
+    """Refuse a scene without tolerances, given by `keys` or by itself, or without claims."""
+    if not (keys or scene.tolerances):
+        raise LoomfmuError(
+            f'{scene.name}: there are no tolerances; write [tolerances] "belt.guide_clearance" ='
+            ' ["0.2 mm", "0.5 mm"], or --vary belt.guide_clearance=0.2mm..0.5mm'
+        )
+    if not scene.claims:
+        raise LoomfmuError(f"{scene.name}: the scene has no claims, so there is no worst case")
+
+
+def _ends(scene: Scene, key: str) -> tuple[Any, Any]:
+    """The ends of a tolerance of the scene, for the worst case. Raises LoomfmuError where it has none."""
+    if (stated := ends_of(scene.tolerances[key])) is not None:
+        return stated
+    low, high = distribution_of(scene, key, scene.tolerances[key]).ends
+    if math.isinf(high - low):
+        raise LoomfmuError(
+            f"{scene.name}: [tolerances]: {key} is normal without ends, so it has no worst case; add"
+            ' within = ["LOW", "HIGH"], or draw looms'
+        )
+    return Si(low), Si(high)
+
+
+def tolerance_of(scene: Scene, key: str, low: Any, high: Any) -> Span:
     """A tolerance. Raises LoomfmuError for one without both ends: they cannot be guessed."""
     if low is None and "=" not in key:
         raise LoomfmuError(f"{key}: a tolerance needs both ends, such as {key}=LOW..HIGH with units")
@@ -85,9 +107,14 @@ def _span(scene: Scene, key: str, low: Any, high: Any) -> Span:
         ) from None
 
 
-def _check(spans: Sequence[Span]) -> None:
-    if twice := set_twice(spans):
+def check_twice(varied: Sequence[Keyed]) -> None:
+    """Refuse two tolerances of one value. Raises LoomfmuError."""
+    if twice := set_twice(varied):
         raise LoomfmuError(f"{twice[0].key} has two tolerances")
+
+
+def _check(spans: Sequence[Span]) -> None:
+    check_twice(spans)
     for span in spans:
         if not span.low <= span.value <= span.high:
             raise LoomfmuError(

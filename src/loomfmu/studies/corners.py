@@ -1,0 +1,45 @@
+"""The corners of a scene's tolerances, as cases."""
+
+import math
+from collections.abc import Collection, Sequence
+from itertools import product
+
+from ..cosim.scenes.scene import Scene
+from ..cosim.scenes.tolerances import ends_of
+from ..errors import LoomfmuError
+from ..sweeps.varied import Varied, varied
+from .cases import MOST, Case
+from .tolerances.distributions import distribution_of
+
+
+def corners_of(scene: Scene, apart: Collection[str] = ()) -> list[Case]:
+    """Return the scene's own values, and the corners of its tolerances, but those that set one `apart`.
+
+    Raises LoomfmuError where there are none, too many, or one without ends.
+    """
+    keys = [key for key in scene.tolerances if not {*varied(scene, key).targets} & {*apart}]
+    if not keys:
+        more = " of anything else" if scene.tolerances else ""
+        raise LoomfmuError(f"corners: the scene states no [tolerances]{more}")
+    ends = [_ends(scene, key) for key in keys]
+    if 2 ** len(ends) >= MOST:
+        raise LoomfmuError(f"{len(ends)} tolerances have {2 ** len(ends)} corners; the limit is {MOST} cases")
+    corners = [
+        Case(
+            ", ".join(f"{each.key} = {each.show(value)}" for each, value in corner),
+            {each.key: each.setting(value) for each, value in corner},
+        )
+        for corner in product(*ends)
+    ]
+    return [Case("own values"), *corners]
+
+
+def _ends(scene: Scene, key: str) -> Sequence[tuple[Varied, float]]:
+    """A variable with a tolerance, at both ends of this."""
+    variable, stated = varied(scene, key), ends_of(scene.tolerances[key])
+    if stated is None:
+        ends = distribution_of(scene, key, scene.tolerances[key]).ends
+        if math.isinf(ends[1] - ends[0]):
+            raise LoomfmuError(f'tolerances: {key} is normal without ends; add within = ["LOW", "HIGH"]')
+        return [(variable, end) for end in ends]
+    return [(variable, float(variable.read(end))) for end in stated]
