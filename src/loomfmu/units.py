@@ -267,8 +267,10 @@ def exact(value: float, name: str) -> str:
     ['640', '646.81644207']
     """
     factor = unit(name).factor
-    texts = (f"{value / factor:.{digits}g}" for digits in range(7, 17))
-    return next((text for text in texts if float(text) * factor == value), f"{value / factor:.17g}")
+    number = value / factor
+    texts = [f"{number:.{digits}g}" for digits in range(7, 18)]
+    texts += [f"{math.nextafter(number, end):.17g}" for end in (-math.inf, math.inf)]
+    return next((text for text in texts if float(text) * factor == value), texts[-3])
 
 
 def si(name: str) -> str:

@@ -57,7 +57,7 @@ def _check(told: dict[str, Any], folder: Path) -> list[str]:
 def test_a_certificate_is_confirmed(told: dict[str, Any], tmp_path: Path) -> None:
     lines = _check(told, tmp_path)
     names = ("margin", "dwell", "transfer")
-    assert [line.split(" (")[0] for line in lines] == [f"confirmed: {name}" for name in names]
+    assert [line.split(" (")[0] for line in lines] == [f"confirmed: {name!r}" for name in names]
     box = "for all shaft angles of 2 revolutions, shaft.speed from 640 to 645 rev/min"
     assert f"bound = 0.1) {box}" in lines[0]
 

@@ -97,6 +97,21 @@ def test_a_start_up_and_a_table_of_inputs_are_proven_over_time(loom: Scene, text
     assert prove(above, claims=["margin"]).claims[0].status == "refuted"
 
 
+@pytest.mark.parametrize(
+    ("signal", "status"),
+    [
+        ("heald_1.lift + 1e14 m + 1 mm - 1e14 m", "open"),  # 99 mm; no run decides that
+        ("heald_1.lift + 1 mm", "refuted"),
+        ("heald_1.lift * 1e-200 * 1e-200 * 1e200 * 1e200", "proven"),
+        ("heald_1.lift * 1e-200 * 1e-200", "cannot be proven"),
+    ],
+)
+def test_the_numbers_of_an_expression_are_exact(loom: Scene, signal: str, status: str) -> None:
+    text = loom.text.split("[[claims]]")[0] + claim("below", signal=signal, bound="98.5 mm")
+    (found,) = prove(parse(text, "loom")).claims
+    assert found.status == status
+
+
 def test_nothing_is_proven_of_an_input_that_follows_a_table(loom: Scene) -> None:
     table = '[inputs]\n"heald_1.load" = [[0, 10], [1, 20]]\n'
     text = loom.text.split("[[claims]]")[0] + table + claim("below", signal="heald_1.load", bound=15)

@@ -1,6 +1,8 @@
 """Claims on expressions of signals: each is judged as a signal whose curve follows from theirs."""
 
+from contextlib import suppress
 from dataclasses import replace
+from fractions import Fraction
 
 import numpy as np
 
@@ -100,10 +102,20 @@ class _OfExpression(Bounded, kind=False):
         for name in shares:
             if present(name, run, self.sense) != name:
                 raise Unprovable(f"{name} depends on the run so far")
-        terms = [(self.sense * share, name) for name, share in shares.items()]
+        terms = [(_float(self.sense * share), name) for name, share in shares.items()]
         if isinstance(self.bound, str):
-            return Always((Sum((*terms, (-self.sense, self.bound)), self.sense * constant),), self.window)
-        return Always((Sum(tuple(terms), self.sense * (constant - self.bound)),), self.window)
+            terms.append((float(-self.sense), self.bound))
+        else:
+            constant -= Fraction(self.bound)
+        return Always((Sum(tuple(terms), _float(self.sense * constant)),), self.window)
+
+
+def _float(exact: Fraction) -> float:
+    """Return a number as a float. Raises Unprovable where it is too large or too small for that."""
+    with suppress(OverflowError):
+        if (found := float(exact)) or not exact:
+            return found
+    raise Unprovable("it has numbers that are too large or too small")
 
 
 class _AboveExpression(_OfExpression, Above, kind=False):

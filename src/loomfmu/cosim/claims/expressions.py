@@ -5,6 +5,7 @@ import math
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from itertools import product
 from operator import add, sub
 
@@ -117,33 +118,38 @@ class Node:
         others = self.parts[1 - place].cases(sense if (known[place] or 0.0) > 0.0 else -sense)
         return [self.of(*((each, self.parts[1]) if place else (self.parts[0], each))) for each in others]
 
-    def linear(self) -> tuple[dict[str, float], float] | None:
-        """The share of each signal and a constant, if it is a sum of these."""
-        if (constant := self.constant) is not None:
-            return {}, constant
+    def linear(self) -> tuple[dict[str, Fraction], Fraction] | None:
+        """The share of each signal and a constant, if it is a sum of these; its numbers are not rounded."""
+        if self.kind in ("number", *FUNCTIONS) and self.constant is not None:
+            return {}, Fraction(self.constant)
         if self.kind == "signal":
-            return {self.text: self.factor}, 0.0
-        scale, parts = 1.0, list(self.parts)
+            return {self.text: Fraction(self.factor)}, Fraction(0)
+        scale, parts = Fraction(1), list(self.parts)
         if self.kind in ("*", "/"):
-            known = [part.constant for part in parts]
-            if known[1] is None and (self.kind == "/" or known[0] is None):
-                return None
+            known = [_number(part.linear()) for part in parts]
             place = 1 if known[1] is not None else 0
-            value = known[place] or 0.0
-            scale, parts = 1.0 / value if self.kind == "/" else value, [parts[1 - place]]
+            value = known[place]
+            if value is None or (self.kind == "/" and (place == 0 or not value)):
+                return None
+            scale, parts = 1 / value if self.kind == "/" else value, [parts[1 - place]]
         elif self.kind == "neg":
-            scale = -1.0
+            scale = Fraction(-1)
         elif self.kind != "+":
             return None
-        shares, total = dict[str, float](), 0.0
+        shares, total = dict[str, Fraction](), Fraction(0)
         for part in parts:
             found = part.linear()
             if found is None:
                 return None
             for name, share in found[0].items():
-                shares[name] = shares.get(name, 0.0) + scale * share
+                shares[name] = shares.get(name, Fraction(0)) + scale * share
             total += scale * found[1]
         return shares, total
+
+
+def _number(linear: tuple[dict[str, Fraction], Fraction] | None) -> Fraction | None:
+    """Return the number that a sum is if it has no signals."""
+    return None if linear is None or linear[0] else linear[1]
 
 
 class Expression(str):

@@ -113,6 +113,8 @@ class _Check:
             within += f", {about.key} from {first} to {last}" + f" {about.shown_unit}" * (
                 about.shown_unit != "1"
             )
+        set_to = [f"{key} = {value}" for key, value in told["overrides"].items()]
+        within += f"; the scene's own values are changed: {', '.join(set_to)}" * bool(set_to)
         names = [name_of(table) for table in scene.claims]
         self.lines: list[str] = []
         if not told["claims"] or any(names.count(claim["name"]) != 1 for claim in told["claims"]):
@@ -128,7 +130,7 @@ class _Check:
                 self._check(claim["name"], condition, covers, chain)
             table = scene.claims[names.index(claim["name"])]
             asked = ", ".join(f"{key} = {value}" for key, value in table.items() if key != "name")
-            line = f"confirmed: {claim['name']} ({asked}) for all shaft angles{within}"
+            line = f"confirmed: {shown(claim['name'])} ({asked}) for all shaft angles{within}"
             self.lines.append(" ".join(line.split()))
 
     def _check(self, name: str, condition: Condition, covers: Sequence[Any], chain: "_Mechanisms") -> None:
