@@ -23,6 +23,7 @@ from .spans import Ends, Floats
 
 MOST = 200_000  # boxes for one condition
 FINE = 1 / 400  # of a revolution: so narrow must a box be that a mechanism is in one of its phases
+CORNERS = 4  # sides, the corners of whose box are all run
 LOOKED_AT = 16  # boxes left open, in whose middles runs look for a witness
 
 
@@ -160,13 +161,13 @@ class Search:
 
     @cached_property
     def _runs(self) -> list[tuple[dict[str, float], Evaluation]]:
-        """Runs at the ends and in the middle of the first two sides, the others along with them."""
-        return [
-            self._run(
-                {side.key: side.at(share) for side, share in zip(self._sides, cycle(row), strict=False)}
-            )
-            for row in product((0.0, 0.5, 1.0), repeat=min(2, len(self._sides)))
-        ]
+        """Runs at the ends and in the middle of the first two sides, the others along with them, and at the
+        corners of a box with a few more."""
+        count = len(self._sides)
+        rows = [*product((0.0, 0.5, 1.0), repeat=min(2, count))]
+        rows += product((0.0, 1.0), repeat=count) if 2 < count <= CORNERS else ()
+        shares = (zip(self._sides, cycle(row), strict=False) for row in rows)
+        return [self._run({side.key: side.at(share) for side, share in each}) for each in shares]
 
     def _run(self, values: dict[str, float]) -> tuple[dict[str, float], Evaluation]:
         return values, self._loom.evaluate({key: units.Si(value) for key, value in values.items()})
