@@ -18,7 +18,7 @@ from .scenes.graph import step_order
 from .scenes.headings import heading
 from .scenes.instances import Instance
 from .scenes.scene import Scene, files_of
-from .scenes.settings import UNIFORM
+from .scenes.settings import ITERATED, UNIFORM
 
 
 def export(
@@ -34,8 +34,8 @@ def export(
     The same scene gives the same bytes. `overwrite` replaces a file that is not an FMU of ours.
 
     Raises:
-        LoomfmuError: the scene has third-party FMUs or a loop, a component does not translate, there is no
-            compiler, or the file cannot be written
+        LoomfmuError: the scene has third-party FMUs or a lagged loop, a component does not translate, there
+            is no compiler, or the file cannot be written
     """
     scene = checked_claims(scene).scene
     inputs = files_of(scene)
@@ -54,10 +54,9 @@ def system(scene: Scene, whole: str = "one FMU of a whole scene", instead: str =
     signals = requested.needed(requested.claims, requested.recorded)
     needed = prune(scene, signals, keep_shafts=True).scene
     order, lagged = step_order(needed.instances, needed.wires)
-    if lagged:
+    if lagged and scene.coupling != ITERATED:
         raise LoomfmuError(
-            f"loop: {lagged[0]} closes an algebraic loop, which {whole} cannot hold; {instead},"
-            f' or cut the wire by [wires] "{".".join(lagged[0].sink)}" = false'
+            f"loop: {lagged[0]} is {scene.coupling}, and {whole} iterates: set coupling = {ITERATED!r}"
         )
     parts = tuple(
         _part(needed.instances[name], f"{whole} is made of components alone: {instead}") for name in order

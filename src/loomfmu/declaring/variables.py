@@ -232,6 +232,8 @@ class Component:
     longest_turn: ClassVar[float] = 0.0
     # of a shaft: the parameters that are 0 while it turns evenly; none of one that never does
     unsteady: ClassVar[tuple[str, ...]] = ()
+    # whether a native FMU has derivatives of its outputs
+    derivatives: ClassVar[bool] = True
     # end and communication step that a host starts from [s]
     experiment: ClassVar[tuple[float, float]] = (1.0, 1e-4)
 

@@ -11,9 +11,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ...fmi.system.loops import RULE
 from ..importing.slave import Slave
 from ..scenes.graph import Wire, step_order
-from .loops import MOST_EXCHANGES, ROUNDING, Broyden
+from .loops import Broyden
 from .signals import Signals
 from .steppers import Action, perform
 
@@ -60,12 +61,14 @@ class Start:
             handed |= {wire: self._value(wire) for wire in within if wire.sink[0] == name}
             changed = self._leave(name)
         if not settled:
-            self.warnings.append(f"loop: the start values did not converge in {MOST_EXCHANGES} exchanges")
+            self.warnings.append(
+                f"loop: the start values did not converge in {RULE.most_exchanges} exchanges"
+            )
         self.warnings += [
             f"loop: {wire} changed after {wire.sink[0]} had left initialization;"
             f" its sample at 0 s is based on the old value"
             for wire, value in handed.items()
-            if not math.isclose(value, self._value(wire), rel_tol=ROUNDING)
+            if not math.isclose(value, self._value(wire), rel_tol=RULE.rounding)
         ]
 
     def _value(self, wire: Wire) -> float:

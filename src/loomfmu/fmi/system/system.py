@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, cached_property
 from typing import Any
 
 from ...declaring.declarations import parameter
@@ -53,6 +53,32 @@ class System:
     steps: int = 0
     step: float = 0.0
 
+    @cached_property
+    def closing(self) -> list[tuple[str, str]]:
+        """The wires that close a loop, each as its sink and its source, in the order of the steps."""
+        place = {part.name: number for number, part in enumerate(self.parts)}
+        wires = [(sink, source, place[sink.partition(".")[0]]) for sink, source in self.wires.items()]
+        closing = [wire for wire in wires if place[wire[1].partition(".")[0]] >= wire[2]]
+        return [(sink, source) for sink, source, _ in sorted(closing, key=lambda wire: wire[2])]
+
+    @cached_property
+    def closing_sources(self) -> list[str]:
+        """The sources of these wires, real ones first."""
+        sources = dict.fromkeys(source for _, source in self.closing)
+        return sorted(sources, key=lambda source: self.variable(source).type is not float)
+
+    @property
+    def closing_reals(self) -> int:
+        """The number of these sources that are real."""
+        return sum(self.variable(source).type is float for source in self.closing_sources)
+
+    def variable(self, name: str) -> Variable:
+        """The declaration of a variable `part.variable` in its component."""
+        owner, _, variable = name.partition(".")
+        (part,) = (each for each in self.parts if each.name == owner)
+        (found,) = (each for each in variables_of(part.component) if each.name == variable)
+        return found
+
     @property
     def problem(self) -> Problem:
         """The problem that is reported if the grid has no steps."""
@@ -71,6 +97,7 @@ def component_of(system: System) -> type[Component]:
         "problems": (system.problem, *(p for part in system.parts for p in problems_of(system, part))),
         "terminals": tuple(_terminals(system, {v.name: v for v in variables})),
         "experiment": system.experiment,
+        "derivatives": not system.closing,
     }
     return type(system.name, (Component,), members)
 
@@ -124,17 +151,28 @@ def _dependencies(system: System) -> Reach:
         for part in system.parts
     }
     declared = {f"{part.name}.{v.name}": v for part in system.parts for v in variables_of(part.component)}
+    opened = [
+        name
+        for each in inputs.values()
+        for name in each
+        if name not in system.wires and name not in system.drives
+    ]
+
+    def sources(name: str) -> list[str]:
+        owner = name.partition(".")[0]
+        if name in inputs[owner]:
+            return [system.wires[name]] if name in system.wires else []
+        own = declared[name].depends
+        return inputs[owner] if own is None else [f"{owner}.{each}" for each in own]
 
     @cache
     def reach(name: str) -> tuple[str, ...]:
-        owner = name.partition(".")[0]
-        if name in inputs[owner]:
-            if name in system.wires:
-                return reach(system.wires[name])
-            return () if name in system.drives else (name,)
-        own = declared[name].depends
-        needed = inputs[owner] if own is None else [f"{owner}.{each}" for each in own]
-        return tuple(dict.fromkeys(source for each in needed for source in reach(each)))
+        found, left = dict.fromkeys([name]), [name]
+        while left:
+            new = [each for each in sources(left.pop()) if each not in found]
+            found |= dict.fromkeys(new)
+            left += new
+        return tuple(each for each in opened if each in found)
 
     return reach
 
