@@ -56,6 +56,7 @@ class Fmi3Slave(Slave):
 
     standard = "fmi3"
     _state_word = "State"
+    _wrapper = FMU3Slave
     refuses_by_log = False
 
     def __init__(self, fmu: "Fmu", name: str):
@@ -74,7 +75,7 @@ class Fmi3Slave(Slave):
         }
 
     def _open(self) -> Any:
-        slave = self._loaded(FMU3Slave)
+        slave = self._loaded(self._wrapper)
         slave.instantiate(loggingOn=self.fmu.trusted, logMessage=self._log_3)
         return slave
 

@@ -128,6 +128,7 @@ class IsolatedSlave(Slave):
             "trusted",
             "needs_tool",
             "tolerance",
+            "exchange",
             "path",
             "directory",
             "guid",

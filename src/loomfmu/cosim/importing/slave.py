@@ -93,6 +93,9 @@ class Slave(Logged):
     keeps_calls = True  # whether prepared calls serve another run, too
     refuses_by_log = True  # whether what it logs as discarded or worse is a refusal, whatever it returns
     _state_word = "state"
+    _wrapper: Any = FMU2Slave  # fmpy's class for it
+    _interface = fmi2CoSimulation
+    _at = 0.0  # s, where it stands, if it is solved here
 
     def __init__(self, fmu: "Fmu", name: str):
         super().__init__(name)
@@ -153,7 +156,7 @@ class Slave(Logged):
         slave.callbacks = callbacks
         slave.component = slave.fmi2Instantiate(
             self.name.encode(),
-            fmi2CoSimulation,
+            self._interface,
             self.fmu.guid.encode(),
             resources.encode(),
             ctypes.byref(callbacks),
@@ -207,7 +210,7 @@ class Slave(Logged):
         function = self._functions.get(name)
         if function is None:
             function = self._functions[name] = self._library[f"{self.standard}{name}"]
-        status = self.noted(f"{self.standard}{name}", 0.0, function, self._component, *arguments)
+        status = self.noted(f"{self.standard}{name}", self._at, function, self._component, *arguments)
         if not OK <= status <= WARNING:
             raise FMICallException(f"{self.standard}{name}", status)
 
