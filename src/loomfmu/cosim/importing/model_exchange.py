@@ -56,7 +56,8 @@ class Solved(Slave):
                 " for an FMU for model exchange"
             )
         self._at, self._next = 0.0, math.inf
-        self._failing, self._ended_at = "", None
+        self._failing = ""
+        self._ended_at: float | None = None
         super().start(values, stop_time)
 
     def finish_initialization(self) -> None:
