@@ -7,6 +7,7 @@ from xml.etree.ElementTree import Element, SubElement
 from ...errors import LoomfmuError, shown
 from ...fmi.description.parameter_sets import SSC, SSV
 from ..importing.conversions import BASES, SAME, Definition, Linear
+from ..importing.ports import Port
 
 SSD_FILE = "SystemStructure.ssd"
 PARAMETER_SET = "application/x-ssp-parameter-set"
@@ -41,6 +42,18 @@ def full(name: str) -> str:
     """
     prefix, _, tag = name.partition(":")
     return f"{{{NAMESPACES[prefix]}}}{tag}"
+
+
+def connector(parent: Element, name: str, kind: str, port: Port) -> Element:
+    """Write a connector of a variable, with its type and its unit."""
+    element = SubElement(parent, "ssd:Connector", name=name, kind=kind)
+    SubElement(element, f"ssc:{port.kind}", {"unit": port.unit} if stated_unit(port) else {})
+    return element
+
+
+def stated_unit(port: Port) -> bool:
+    """Return whether a package states the unit of a variable."""
+    return port.kind == "Real" and port.has_unit and port.definition is not None
 
 
 def write_units(parent: Element, tag: str, units: dict[str, Definition]) -> None:
