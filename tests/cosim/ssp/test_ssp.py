@@ -229,6 +229,13 @@ def test_a_package_may_hold_fmus_of_fmi_3(tmp_path: Path) -> None:
     ssp.export(scene, path, "native", (host(),), fmi=3)
     assert {each.fmu.fmi for each in ssp_read.load(path).instances.values()} == {3}
     alike(tmp_path, scene, path)
+    assert structure(path).get("version") == "2.0"
+    pyssp = pytest.importorskip("pyssp_standard", reason="pyssp_standard is not installed")
+    schemas = Path(pyssp.__file__).with_name("resources") / "ssp2"
+    for suffix, schema in ((".ssd", "Description"), (".ssv", "ParameterValues")):
+        valid = etree.XMLSchema(etree.parse(schemas / f"SystemStructure{schema}.xsd"))
+        for content in members(path, suffix).values():
+            valid.assertValid(etree.fromstring(content))
     with pytest.raises(LoomfmuError, match=r"live FMUs are of FMI 2\.0"):
         ssp.export(scene, tmp_path / "live.ssp", "live", fmi=3)
 

@@ -1,4 +1,4 @@
-"""A scene as a system package (SSP 1.0) for other tools.
+"""A scene as a system package for other tools: SSP 1.0, or SSP 2.0 where its FMUs are of FMI 3.0.
 
 It holds the FMUs, the wiring with units and a diagram, the values of each instance as a parameter set, the
 step in the annotations that the Open Simulation Platform and OMSimulator read, and the text of the scene in
@@ -27,7 +27,19 @@ from ..scenes.instances import Instance
 from ..scenes.scene import Scene, files_of
 from .layout import Box, bends, layout
 from .outside import add_connectors, outer_connectors
-from .xml import FMU, OMS, OSP, OURS, PARAMETER_SET, SSD_FILE, connector, root, stated_unit, write_units
+from .xml import (
+    FMU,
+    OMS,
+    OSP,
+    OURS,
+    PARAMETER_SET,
+    SSD_FILE,
+    connector,
+    of_ssp_2,
+    root,
+    stated_unit,
+    write_units,
+)
 
 PACKAGE = zip_with("a system package of loomfmu", SSD_FILE, ".ssp")
 SET_NAME = "parameters"  # of every instance's set: ecos takes all sets of one name, libcosim the first
@@ -103,13 +115,17 @@ def contents(
     """All files of the package by their names in it."""
     files: Files = {}
     sources: dict[str, str] = {}
+
+    def written(document: Element) -> bytes:
+        return text_of(of_ssp_2(document) if fmi == 3 else document)
+
     for name, instance in scene.instances.items():
         file = _file(instance.fmu, flavour, platforms or tuple(native.PLATFORMS), fmi)
         sources[name] = _place(files, file)
         values = _values(scene, instance)
         if values:
-            files[f"resources/{name}.ssv"] = text_of(_parameter_set(instance, values))
-    files[SSD_FILE] = text_of(_structure(scene, sources, files, connectors))
+            files[f"resources/{name}.ssv"] = written(_parameter_set(instance, values))
+    files[SSD_FILE] = written(_structure(scene, sources, files, connectors))
     return files
 
 

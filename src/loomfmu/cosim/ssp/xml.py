@@ -1,11 +1,13 @@
-"""Names and units as XML, for the writer and the reader of system packages (SSP 1.0)."""
+"""Names and units as XML, for the writer and the reader of system packages."""
 
 import math
 from collections.abc import Iterable
 from xml.etree.ElementTree import Element, SubElement
 
 from ...errors import LoomfmuError, shown
+from ...fmi.description.model_description import FMI3_TYPES
 from ...fmi.description.parameter_sets import SSC, SSV
+from ...fmi.description.references import FMI_TYPES
 from ..importing.conversions import BASES, SAME, Definition, Linear
 from ..importing.ports import Port
 
@@ -16,6 +18,7 @@ SSP = "application/x-ssp-package"
 OSP = "com.opensimulationplatform"  # annotation of the Open Simulation Platform: the step
 OMS = "org.openmodelica"  # annotation of OMSimulator: its master and its step
 OURS = "org.pypi.loomfmu"  # our own annotation: the text of the scene
+TYPES_3 = {FMI_TYPES[kind]: name for kind, name in FMI3_TYPES.items()}  # what FMUs of FMI 3.0 have instead
 NAMESPACES = {
     "ssd": "http://ssp-standard.org/SSP1/SystemStructureDescription",
     "ssc": SSC,
@@ -32,6 +35,15 @@ def root(tag: str, *prefixes: str, **attributes: str) -> Element:
     """A root element. Names are written with these prefixes, which some tools look for literally."""
     spaces = {f"xmlns:{prefix}": NAMESPACES[prefix] for prefix in prefixes}
     return Element(tag, spaces | attributes)
+
+
+def of_ssp_2(document: Element) -> Element:
+    """The same document of SSP 2.0, which has the types of FMI 3.0."""
+    document.set("version", "2.0")
+    for element in document.iter():
+        prefix, _, kind = element.tag.partition(":")
+        element.tag = f"{prefix}:{TYPES_3.get(kind, kind)}"
+    return document
 
 
 def full(name: str) -> str:
