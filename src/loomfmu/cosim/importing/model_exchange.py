@@ -44,7 +44,7 @@ class _Vector:
 class Solved(Slave):
     """One instance of an FMU for model exchange."""
 
-    def start(self, values: dict[str, Value], stop_time: float) -> None:
+    def start(self, values: dict[str, Value], stop_time: float, start_time: float = 0.0) -> None:
         """See `Slave`."""
         states, indicators, self._completes = self.fmu.exchange or (0, 0, False)
         self._states, self._rates, self._nominals = (_Vector(states) for _ in range(3))
@@ -55,10 +55,10 @@ class Solved(Slave):
                 f"{self.name}.tolerance = {self._tolerance_used:g} must be at least {LEAST_TOLERANCE:g}"
                 " for an FMU for model exchange"
             )
-        self._at, self._next = 0.0, math.inf
+        self._at, self._next = start_time, math.inf
         self._failing = ""
         self._ended_at: float | None = None
-        super().start(values, stop_time)
+        super().start(values, stop_time, start_time)
 
     def finish_initialization(self) -> None:
         """Leave the initialization, and go through the events of the start."""

@@ -50,7 +50,6 @@ if TYPE_CHECKING:
     from .fmus import Fmu
 
 SIZES = {"Real": 8, "Integer": 4, "Boolean": 4}  # bytes of a value in the master's vectors
-_ZERO = ctypes.c_double(0.0)
 NEEDS_TOOL = "it says that it needs the tool that created it (needsExecutionTool = true)"
 MEMORY = {
     "allocateMemory": fmi2CallbackAllocateMemoryTYPE(calloc),
@@ -183,11 +182,11 @@ class Slave(Logged):
     def _complained(self, messages: Sequence[tuple[int, str]]) -> bool:
         return self.refuses_by_log and any(status >= DISCARD for status, _text in messages)
 
-    def start(self, values: dict[str, Value], stop_time: float) -> None:
+    def start(self, values: dict[str, Value], stop_time: float, start_time: float = 0.0) -> None:
         """Set the experiment up and the values, and enter the initialization."""
         self.forget_messages()
-        stop = ctypes.c_double(stop_time)
-        self._do(self._call, "SetupExperiment", *self._tolerance(), _ZERO, fmi2True, stop)
+        first, stop = ctypes.c_double(start_time), ctypes.c_double(stop_time)
+        self._do(self._call, "SetupExperiment", *self._tolerance(), first, fmi2True, stop)
         self.started = True
         for setting in self._settings_of(tuple(values)):
             setting.values[:] = [values[name] for name in setting.names]
