@@ -1,5 +1,8 @@
 """FMUs for model exchange, which are solved here: against exact solutions and against fmpy's CVODE."""
 
+import re
+import zipfile
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -8,10 +11,14 @@ import numpy as np
 import pytest
 from foreign_motors import library, packed
 from motor_scenes import refused
+from scipy.integrate import solve_ivp
 
 from loomfmu import LoomfmuError
+from loomfmu.components import COMPONENTS
+from loomfmu.cosim.importing.built import file_of
 from loomfmu.cosim.run import Result, run
 from loomfmu.cosim.scenes import scene as scenes
+from loomfmu.fmi.native.platforms import host
 
 MODELS = {"BALL": (2, 1), "OSCILLATOR": (2, 0), "DAHLQUIST": (1, 0), "STAIRS": (0, 0)}  # states, indicators
 NAMES = {1: "h", 2: "v", 3: "der_h", 4: "der_v"}
@@ -113,6 +120,37 @@ def test_it_agrees_with_cvode(tmp_path: Path, model: str, fmi: int) -> None:
         # each is within some 1e-8 of the solution at this tolerance; a ball's speed jumps at its bounces
         at = np.abs(np.interp(trace.time, found["time"], found[name]) - trace[f"it.{name}"])
         assert np.mean(at > 1e-6) <= (0.0 if model != "BALL" else 0.01)
+
+
+def test_a_stiff_one_is_solved(tmp_path: Path) -> None:
+    trace = solved(exchanged(tmp_path, "OSCILLATOR"), "tolerance = 1e-9\np = 1000.0\n").trace
+
+    def rates(_time: float, x: np.ndarray) -> list[float]:
+        return [x[1], 1000.0 * (1.0 - x[0] ** 2) * x[1] - x[0]]
+
+    found = solve_ivp(rates, (0, 2), [2.0, 0.0], "Radau", rtol=1e-10, atol=1e-12, t_eval=trace.time)
+    np.testing.assert_allclose(trace["it.h"], found.y[0], rtol=0, atol=1e-7)  # 200 steps of 1e-9, damped
+
+
+@pytest.mark.skipif(find_spec("ziglang") is None, reason="ziglang is not installed: no native FMU")
+@pytest.mark.parametrize("fmi", [2, 3])
+@pytest.mark.parametrize("name", ["DobbyDrive", "DetachingRoller"])
+def test_ours_give_what_they_give_in_co_simulation(tmp_path: Path, name: str, fmi: int) -> None:
+    """They refuse every call in a mode that the standard does not allow it in."""
+    file, traces = file_of(COMPONENTS[name], "native", (host(),), fmi), []
+    for left_out in ("CoSimulation", "ModelExchange"):
+        path = tmp_path / f"without_{left_out}.fmu"
+        with zipfile.ZipFile(file) as source, zipfile.ZipFile(path, "w") as target:
+            for each in source.namelist():
+                content = source.read(each)
+                if each == "modelDescription.xml":
+                    element = f"<{left_out}\\b[^>]*/>|<{left_out}\\b.*?</{left_out}>"
+                    content = re.sub(element, "", content.decode(), flags=re.DOTALL).encode()
+                target.writestr(each, content)
+        traces.append(solved(path, duration=0.6, step=0.003).trace)
+    solved_here, stepped = traces
+    for signal in stepped:
+        np.testing.assert_array_equal(solved_here[signal], stepped[signal], err_msg=signal)
 
 
 @pytest.mark.parametrize("fmi", [2, 3])
