@@ -40,7 +40,14 @@ def export(
     scene = checked_claims(scene).scene
     inputs = files_of(scene)
     check_target(path, FMU, inputs, overwrite)  # before the FMU is compiled
-    write_file(path, zipped(contents(system(scene), platforms, fmi)), FMU, inputs, overwrite)
+    made = system(scene)
+    if made.closing and scene.coupling != ITERATED:
+        sink, source = made.closing[0]
+        raise LoomfmuError(
+            f"loop: {source} -> {sink} is {scene.coupling}, and one FMU of a whole scene iterates:"
+            f" set coupling = {ITERATED!r}"
+        )
+    write_file(path, zipped(contents(made, platforms, fmi)), FMU, inputs, overwrite)
     grid = f"grid = {scene.grid!r} is ignored: the FMU takes equal steps"
     return [*scene.notes, *[grid] * (scene.grid != UNIFORM)]
 
@@ -53,11 +60,7 @@ def system(scene: Scene, whole: str = "one FMU of a whole scene", instead: str =
     requested = Requested(scene)
     signals = requested.needed(requested.claims, requested.recorded)
     needed = prune(scene, signals, keep_shafts=True).scene
-    order, lagged = step_order(needed.instances, needed.wires)
-    if lagged and scene.coupling != ITERATED:
-        raise LoomfmuError(
-            f"loop: {lagged[0]} is {scene.coupling}, and {whole} iterates: set coupling = {ITERATED!r}"
-        )
+    order, _closing = step_order(needed.instances, needed.wires)
     parts = tuple(
         _part(needed.instances[name], f"{whole} is made of components alone: {instead}") for name in order
     )
