@@ -293,6 +293,13 @@ def test_a_loop_that_does_not_converge_fails_the_step_and_is_named(tmp_path: Pat
     assert instance.all() == before
 
 
+def test_a_loop_that_does_not_agree_at_the_start_is_named(tmp_path: Path) -> None:
+    text = UNSOLVED.replace('[[0, 0], [0.1, 0], [0.2, "5 N"]]', '[[0, "5 N"]]')
+    one = Whole(exported(scenes.parse(text, "unsolved"), tmp_path), tmp_path / "unpacked")
+    wire = "loop damper_1.carrier_acceleration -> belt.acceleration"
+    assert f"{wire}: the start values did not converge" in one.instance().log
+
+
 def test_a_loop_gives_no_derivatives_and_says_so(shaft: Whole) -> None:
     assert not shaft.description.coSimulation.providesDirectionalDerivative
     margin = shaft.variables["belt.margin"].valueReference
