@@ -571,6 +571,13 @@ def test_numbers_without_unit_are_si_as_everywhere_and_named(
     assert high == "warning: --vary shaft.speed = 80 is read as 80 rad/s = 763.9437 rev/min"
 
 
+@pytest.mark.parametrize("coupling", ["iterated", "lagged"])
+def test_a_loop_is_refused(tmp_path: Path, coupling: str) -> None:
+    with pytest.raises(LoomfmuError, match=r"loop: weft\.shaft_torque -> .* a page that .* cannot hold; use"):
+        live_page.write(SIMS / "light_shaft.toml", [], tmp_path / "page.html", set={"coupling": coupling})
+    assert not list(tmp_path.iterdir())
+
+
 def test_without_a_compiler_there_is_no_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(compiler, "compiler", lambda: None)
     with pytest.raises(LoomfmuError, match='pip install "loomfmu\\[native\\]"'):

@@ -127,5 +127,18 @@ class Instance:
             rows.append(self.all())
         return {name: np.array([row[name] for row in rows]) for name in self.whole.outputs}
 
+    def save(self) -> tuple[Any, bytes]:
+        """Its state, and the same as bytes."""
+        slave, word = self.slave, "state" if self.whole.fmi == 2 else "State"
+        state = getattr(slave, f"getFMU{word}")()
+        return state, getattr(slave, f"serializeFMU{word}")(state)
+
+    def restore(self, saved: Any) -> None:
+        """Go back to a state, or to one from bytes."""
+        slave, old = self.slave, self.whole.fmi == 2
+        if isinstance(saved, bytes):
+            saved = slave.deSerializeFMUstate(saved) if old else slave.deserializeFMUState(saved)
+        slave.setFMUstate(saved) if old else slave.setFMUState(saved)
+
     def free(self) -> None:
         self.slave.freeInstance()

@@ -146,8 +146,8 @@ def test_options_of_one_kind_of_export_are_refused_for_the_other(capsys: pytest.
     path = scene(HEAD + SHAFT)
     assert main(["export", path, "--fmu", "loom.fmu", "--flavour", "live"]) == 2
     assert "--flavour is for --ssp: one FMU of a whole scene is always native" in capsys.readouterr().err
-    assert main(["export", path, "--ssp", "loom.ssp", "--fmi", "3"]) == 2
-    assert "--fmi is for --fmu: a system package holds FMUs of FMI 2.0" in capsys.readouterr().err
+    assert main(["export", path, "--fmu", "loom.fmu", "--connectors"]) == 2
+    assert "--connectors is for --ssp: one FMU of a whole scene" in capsys.readouterr().err
     assert not list(Path().glob("loom.*"))
     with pytest.raises(SystemExit, match="2"):
         main(["export", path])  # one of the two must be given

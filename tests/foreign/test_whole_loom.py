@@ -10,8 +10,11 @@ from masters import Signals, check_by_fmutool, demo, ecospy, libcosimpy, ours
 from whole_fmus import Whole, exported
 
 from loomfmu.cosim.importing.fmus import Fmu
+from loomfmu.cosim.scenes import scene as scenes
 
 STEPS = 1000  # in a revolution of 0.1 s: a step is a whole number of nanoseconds
+LOOPED = Path(__file__).parents[2] / "sims" / "light_shaft.toml"  # whose loop is iterated inside
+SPEED = {"shaft.speed": "600 rpm", "steps_per_revolution": STEPS, "revolutions": 1}
 Stepped = Callable[[Path, list[str], dict[str, int]], Signals]
 
 
@@ -44,8 +47,9 @@ def ecos(path: Path, signals: list[str], _references: dict[str, int]) -> Signals
 @pytest.mark.few(1)
 @pytest.mark.usefixtures("natives")
 @pytest.mark.parametrize("master", [libcosim, ecos], ids=lambda master: master.__name__)
-def test_it_gives_our_bits(tmp_path: Path, master: Stepped) -> None:
-    scene = demo(STEPS)
+@pytest.mark.parametrize("looped", [False, True])
+def test_it_gives_our_bits(tmp_path: Path, master: Stepped, looped: bool) -> None:
+    scene = scenes.load(LOOPED, SPEED) if looped else demo(STEPS)
     one = Whole(exported(scene, tmp_path), tmp_path / "unpacked")
     expected = ours(scene, tmp_path)
     references = {signal: one.variables[signal].valueReference for signal in expected}

@@ -159,12 +159,16 @@ def _print_pace(result: "Result") -> None:
         required=True,
     ),
     SET,
-    argument("--fmi", None, "FMI version of FILE.fmu; 2 by default", type=int, choices=(2, 3)),
+    argument("--fmi", None, "FMI version of the FMUs; 2 by default", type=int, choices=(2, 3)),
     argument(
         "--flavour",
         None,
         "kind of FMUs in FILE.ssp; native by default if they can be built",
         choices=("live", "native"),
+    ),
+    flag(
+        "--connectors",
+        "give the system in FILE.ssp connectors, as fmucontainer needs; libcosim and ecos reject them",
     ),
     PLATFORM,
     force("the file even if loomfmu did not write it"),
@@ -177,14 +181,15 @@ def export(options: argparse.Namespace) -> int:
 
     if options.fmu and options.flavour:
         raise LoomfmuError("--flavour is for --ssp: one FMU of a whole scene is always native")
-    if options.ssp and options.fmi:
-        raise LoomfmuError("--fmi is for --fmu: a system package holds FMUs of FMI 2.0")
+    if options.fmu and options.connectors:
+        raise LoomfmuError("--connectors is for --ssp: one FMU of a whole scene has variables instead")
     built_for = platforms(options)
     loaded = scene.load(options.scene, pairs(options.overrides))
     if options.fmu:
         warnings = whole.export(loaded, options.fmu, built_for, options.fmi or 2, options.force)
     else:
-        warnings = ssp.export(loaded, options.ssp, options.flavour, built_for, options.force)
+        flavour, fmi = options.flavour, options.fmi or 2
+        warnings = ssp.export(loaded, options.ssp, flavour, built_for, options.force, fmi, options.connectors)
     warn(warnings)
     say(f"written: {options.fmu or options.ssp}")
     return 0

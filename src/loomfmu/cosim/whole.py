@@ -18,7 +18,7 @@ from .scenes.graph import step_order
 from .scenes.headings import heading
 from .scenes.instances import Instance
 from .scenes.scene import Scene, files_of
-from .scenes.settings import UNIFORM
+from .scenes.settings import ITERATED, UNIFORM
 
 
 def export(
@@ -34,13 +34,20 @@ def export(
     The same scene gives the same bytes. `overwrite` replaces a file that is not an FMU of ours.
 
     Raises:
-        LoomfmuError: the scene has third-party FMUs or a loop, a component does not translate, there is no
-            compiler, or the file cannot be written
+        LoomfmuError: the scene has third-party FMUs or a lagged loop, a component does not translate, there
+            is no compiler, or the file cannot be written
     """
     scene = checked_claims(scene).scene
     inputs = files_of(scene)
     check_target(path, FMU, inputs, overwrite)  # before the FMU is compiled
-    write_file(path, zipped(contents(system(scene), platforms, fmi)), FMU, inputs, overwrite)
+    made = system(scene)
+    if made.closing and scene.coupling != ITERATED:
+        sink, source = made.closing[0]
+        raise LoomfmuError(
+            f"loop: {source} -> {sink} is {scene.coupling}, and one FMU of a whole scene iterates:"
+            f" set coupling = {ITERATED!r}"
+        )
+    write_file(path, zipped(contents(made, platforms, fmi)), FMU, inputs, overwrite)
     grid = f"grid = {scene.grid!r} is ignored: the FMU takes equal steps"
     return [*scene.notes, *[grid] * (scene.grid != UNIFORM)]
 
@@ -53,12 +60,7 @@ def system(scene: Scene, whole: str = "one FMU of a whole scene", instead: str =
     requested = Requested(scene)
     signals = requested.needed(requested.claims, requested.recorded)
     needed = prune(scene, signals, keep_shafts=True).scene
-    order, lagged = step_order(needed.instances, needed.wires)
-    if lagged:
-        raise LoomfmuError(
-            f"loop: {lagged[0]} closes an algebraic loop, which {whole} cannot hold; {instead},"
-            f' or cut the wire by [wires] "{".".join(lagged[0].sink)}" = false'
-        )
+    order, _closing = step_order(needed.instances, needed.wires)
     parts = tuple(
         _part(needed.instances[name], f"{whole} is made of components alone: {instead}") for name in order
     )

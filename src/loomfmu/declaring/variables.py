@@ -234,6 +234,8 @@ class Component:
     unsteady: ClassVar[tuple[str, ...]] = ()
     # on what each output depends, where there is no source that shows it
     needs: ClassVar[Mapping[str, frozenset[str]]] = {}
+    # whether a native FMU has derivatives of its outputs
+    derivatives: ClassVar[bool] = True
     # end and communication step that a host starts from [s]
     experiment: ClassVar[tuple[float, float]] = (1.0, 1e-4)
 

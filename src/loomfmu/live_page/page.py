@@ -26,7 +26,7 @@ from ..cosim.whole import system
 from ..declaring.upstream import sources_of, upstream
 from ..declaring.variables import Variable, variables_of
 from ..display.progress import progress
-from ..errors import path_of
+from ..errors import LoomfmuError, path_of
 from ..extras import need
 from ..files import check_target, starts_with, write_file
 from ..fmi.native.libraries import library_of
@@ -80,6 +80,12 @@ def write(
     inputs = files_of(loaded)
     check_target(path, PAGE, inputs, overwrite)
     whole = system(loaded, "a page that runs the scene", "use loomfmu run --report")
+    if whole.closing:
+        sink, source = whole.closing[0]
+        raise LoomfmuError(
+            f"loop: {source} -> {sink} closes an algebraic loop, which a page that runs the scene cannot"
+            f' hold; use loomfmu run --report, or cut the wire by [wires] "{sink}" = false'
+        )
     rows = {each.name: (number, each) for number, each in enumerate(variables_of(component_of(whole)))}
     varied = knobs(loaded, [name for name, (_, each) in rows.items() if each.settable], vary)
     with tempfile.TemporaryDirectory(prefix="loomfmu-") as directory:

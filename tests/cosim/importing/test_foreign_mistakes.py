@@ -18,8 +18,8 @@ FILES = {
         '<fmiModelDescription fmiVersion="1.0" modelName="M" modelIdentifier="M" guid="g"'
         ' numberOfContinuousStates="0" numberOfEventIndicators="0"><ModelVariables/></fmiModelDescription>'
     ),
-    "not a co-simulation FMU; only FMI 2.0 and 3.0 co-simulation is supported": THIRD.replace(
-        "<CoSimulation", "<ModelExchange"
+    "an FMU for scheduled execution; only co-simulation and model exchange are supported": THIRD.replace(
+        "<CoSimulation", "<ScheduledExecution"
     ),
     "its modelDescription.xml cannot be read (Unsupported FMI version: 4.0)": THIRD.replace('"3.0"', '"4.0"'),
 }

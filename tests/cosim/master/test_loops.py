@@ -20,6 +20,7 @@ from loomfmu.cosim.importing.built import file_of
 from loomfmu.cosim.importing.calls import Call
 from loomfmu.cosim.importing.logged import Logged
 from loomfmu.cosim.importing.slave import Ended
+from loomfmu.cosim.master import loops
 from loomfmu.cosim.master.grid import Span
 from loomfmu.cosim.master.loops import Broyden, CompiledIteration, Growth, Iteration, Loop
 from loomfmu.cosim.master.steppers import Action, Memory, Rows
@@ -28,6 +29,7 @@ from loomfmu.cosim.run import Evaluation
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.graph import Wire
 from loomfmu.fmi.native.platforms import host
+from loomfmu.fmi.system.loops import RULE
 
 __all__ = ["odd"]
 
@@ -178,7 +180,7 @@ def test_fmus_of_fmi_3_are_iterated_in_c_to_the_bits_of_fmi_2(tmp_path: Path) ->
 @needs_compiler
 def test_iterated_in_c_it_fails_as_in_python(monkeypatch: pytest.MonkeyPatch) -> None:
     scene = in_flavour(scenes.parse(looped("iterated", LIGHT, 360, 1), "loop"), "native")
-    monkeypatch.setattr("loomfmu.cosim.master.loops.MOST_EXCHANGES", 2)
+    monkeypatch.setattr(loops, "RULE", RULE._replace(most_exchanges=2))
     reasons = []
     for kind in (CompiledIteration, Iteration):
         with pytest.raises(LoomfmuError) as raised:
@@ -200,7 +202,7 @@ def iterated(
     with monkeypatch.context() as patch:
         patch.setattr(Broyden, "settle", counted)
         if tolerance:
-            patch.setattr("loomfmu.cosim.master.loops.TOLERANCE", tolerance)
+            patch.setattr(loops, "RULE", RULE._replace(tolerance=tolerance))
         reals = stepped(in_flavour(scenes.parse(text, "loop"), "native"), Iteration)[1]
     return reals, len(exchanges) / len(reals)
 

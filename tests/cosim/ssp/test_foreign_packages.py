@@ -115,6 +115,21 @@ def ran(tmp_path: Path, overrides: dict[str, object] | None = None, **changed: s
     return run(package(tmp_path, **changed), set=overrides, output=tmp_path / "elsewhere.h5")
 
 
+@pytest.mark.parametrize("isolated", [True, False])
+def test_it_starts_when_it_says(tmp_path: Path, isolated: bool) -> None:
+    overrides: dict[str, object] = {"isolated": isolated}
+    first = ran(tmp_path, overrides).trace
+    usual = {signal: np.asarray(first[signal]) for signal in first}
+    later = ran(tmp_path, overrides, experiment='startTime="-1.5" stopTime="-1.3"').trace
+    np.testing.assert_allclose(later.time, np.linspace(-1.5, -1.3, 201), rtol=0, atol=1e-12)
+    # the motor adds up its own steps
+    np.testing.assert_allclose(later["drive_motor.time_"], later.time, rtol=0, atol=1e-12)
+    for signal in set(usual) - {"drive_motor.time_"}:  # nothing else depends on when it is
+        np.testing.assert_allclose(later[signal], usual[signal], rtol=1e-9, atol=1e-9, err_msg=signal)
+    with pytest.raises(LoomfmuError, match=r"it starts at -1\.5 s, so that it runs on a uniform grid alone"):
+        run(tmp_path / "elsewhere.ssp", set={"grid": "windows"}, output=tmp_path / "elsewhere.h5")
+
+
 def test_it_runs_with_its_own_wires_parameters_and_step(tmp_path: Path) -> None:
     result = ran(tmp_path)
     assert (result.scene.title, result.scene.step, result.scene.steps) == ("elsewhere", 1e-3, 200)
@@ -340,7 +355,8 @@ def valued(name: str, kind: str, value: str) -> dict[str, str]:
 
 
 MISTAKES = {
-    "it starts at 1 s; runs start at 0 s": {"experiment": 'startTime="1" stopTime="2"'},
+    "startTime = 1e+10 s is not within 1e+09 s": {"experiment": 'startTime="1e10" stopTime="2e10"'},
+    "duration = -1 is outside": {"experiment": 'startTime="2" stopTime="1"'},
     "duration is given but not step": {"algorithm": ""},
     "there is no shaft whose speed sets the step: add duration": {"algorithm": "", "experiment": ""},
     "connection drive.motor.flange.phi -> drive.phi: IntegerMappingTransformation is not supported, only": {

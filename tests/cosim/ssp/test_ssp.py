@@ -4,6 +4,7 @@ import itertools
 import re
 import zipfile
 from dataclasses import replace
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -23,6 +24,7 @@ from loomfmu.cosim.ssp import export as ssp
 from loomfmu.cosim.ssp import read as ssp_read
 from loomfmu.cosim.ssp.xml import NAMESPACES
 from loomfmu.fmi.fmu_files import zipped
+from loomfmu.fmi.native.platforms import host
 
 SIMS = Path(__file__).parents[3] / "sims"
 DEMO = SIMS / "wl680_3600.toml"
@@ -206,6 +208,36 @@ def test_a_package_runs_as_its_scene_to_the_last_bit(tmp_path: Path, name: str) 
     assert after.trace.attributes["scene"] == scene.text
     signals = [signal for signal in before.trace if signal in scene.record]
     assert signals == [signal for signal in after.trace if signal in after.scene.record]
+
+
+def test_the_system_has_connectors_where_they_are_asked_for(tmp_path: Path) -> None:
+    scene = scenes.load(SIMS / "worn_belt.toml", SHORT)
+    path = tmp_path / "outside.ssp"
+    assert ssp.export(scene, path, "live", connectors=True) == ssp.export(scene, tmp_path / "o.ssp", "live")
+    validate_tree(etree.fromstring(members(path)["SystemStructure.ssd"]), "SystemStructureDescription.xsd")
+    outer = {each.name: each for each in read_ssd(str(path)).system.connectors}
+    assert (outer["shaft_speed"].kind, outer["belt_margin"].kind) == ("parameter", "output")
+    assert {"weft_travel", "weft_velocity", "weft_acceleration"} <= set(outer)  # a terminal
+    alike(tmp_path, scene, path)
+    alike(tmp_path, scene, path, SHORT, **{"shaft.speed": "601 rpm"})
+
+
+@pytest.mark.skipif(find_spec("ziglang") is None, reason="ziglang is not installed: no native FMU")
+def test_a_package_may_hold_fmus_of_fmi_3(tmp_path: Path) -> None:
+    scene = scenes.load(SIMS / "worn_belt.toml", SHORT)
+    path = tmp_path / "three.ssp"
+    ssp.export(scene, path, "native", (host(),), fmi=3)
+    assert {each.fmu.fmi for each in ssp_read.load(path).instances.values()} == {3}
+    alike(tmp_path, scene, path)
+    assert structure(path).get("version") == "2.0"
+    pyssp = pytest.importorskip("pyssp_standard", reason="pyssp_standard is not installed")
+    schemas = Path(pyssp.__file__).with_name("resources") / "ssp2"
+    for suffix, schema in ((".ssd", "Description"), (".ssv", "ParameterValues")):
+        valid = etree.XMLSchema(etree.parse(schemas / f"SystemStructure{schema}.xsd"))
+        for content in members(path, suffix).values():
+            valid.assertValid(etree.fromstring(content))
+    with pytest.raises(LoomfmuError, match=r"live FMUs are of FMI 2\.0"):
+        ssp.export(scene, tmp_path / "live.ssp", "live", fmi=3)
 
 
 @pytest.mark.parametrize("text", [TIMED, "revolutions = 0.5\n[weft]\n[belt]\n" + LOOP])

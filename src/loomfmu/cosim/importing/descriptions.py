@@ -55,6 +55,12 @@ def is_ours(description: Any) -> bool:
     return (description.generationTool or "").startswith("loomfmu ")
 
 
+def exchange_of(description: Any) -> tuple[int, int, bool]:
+    """The numbers of continuous states and event indicators, and if an FMU is told of the solver's steps."""
+    told = description.modelExchange.needsCompletedIntegratorStep
+    return description.numberOfContinuousStates, description.numberOfEventIndicators, told
+
+
 def ports_of(description: Any, component: type[Component] | None) -> dict[str, Port]:
     """The variables of the known types, elements of arrays each, by the names that scenes and traces use.
 

@@ -56,6 +56,7 @@ class Fmi3Slave(Slave):
 
     standard = "fmi3"
     _state_word = "State"
+    _wrapper = FMU3Slave
     refuses_by_log = False
 
     def __init__(self, fmu: "Fmu", name: str):
@@ -74,14 +75,14 @@ class Fmi3Slave(Slave):
         }
 
     def _open(self) -> Any:
-        slave = self._loaded(FMU3Slave)
+        slave = self._loaded(self._wrapper)
         slave.instantiate(loggingOn=self.fmu.trusted, logMessage=self._log_3)
         return slave
 
     def _log_3(self, _environment: Any, status: int, _category: bytes, message: bytes) -> None:
         self._keep(status, message)
 
-    def start(self, values: dict[str, Value], stop_time: float) -> None:
+    def start(self, values: dict[str, Value], stop_time: float, start_time: float = 0.0) -> None:
         """Set the values and enter the initialization."""
         self.forget_messages()
         self.started = True
@@ -96,8 +97,8 @@ class Fmi3Slave(Slave):
             content = list(self._arrays[reference]) if port.array else [values[name]]
             self._do(getattr(self._slave, f"set{function}"), [reference], content)
         defined, tolerance = self._tolerance()
-        zero, stop = ctypes.c_double(), ctypes.c_double(stop_time)
-        experiment = (ctypes.c_bool(defined.value), tolerance, zero, ctypes.c_bool(True), stop)
+        first, stop = ctypes.c_double(start_time), ctypes.c_double(stop_time)
+        experiment = (ctypes.c_bool(defined.value), tolerance, first, ctypes.c_bool(True), stop)
         self._do(self._call, "EnterInitializationMode", *experiment)
 
     def _ended(self) -> float | None:

@@ -37,6 +37,7 @@ from .built import (
 from .descriptions import (
     declared_ports,
     described,
+    exchange_of,
     is_ours,
     plain_names,
     ports_of,
@@ -74,7 +75,8 @@ class Fmu:
     process may have one instance of. `flavour` is that of one which is built when its file is first needed,
     and empty for one that was given as a file. `fixed_step` is one that takes equal steps only, `needs_tool`
     one that says it needs the tool that made it; `unsupported` are outputs without a port. `tolerance` is the
-    relative one that it states for its own solver, None if it states none.
+    relative one that it states for its own solver, None if it states none. `exchange` is of one for model
+    exchange alone, which is solved here: its states, its event indicators, and if it is told of the steps.
     """
 
     name: str
@@ -87,6 +89,7 @@ class Fmu:
     needs_tool: bool = False
     unsupported: tuple[str, ...] = ()
     tolerance: float | None = None
+    exchange: tuple[int, int, bool] | None = None
     flavour: str = ""
     component: type[Component] | None = field(default=None, repr=False)
     given: Unpacked | None = field(default=None, repr=False)
@@ -353,7 +356,8 @@ def _read(path: Path, sha256: str, directory: Path) -> Fmu:
     except Exception as error:  # fmpy raises its own kinds for a description that is none
         raise LoomfmuError(f"{path}: its modelDescription.xml cannot be read ({_reason(error)})") from None
     _check_runnable(path, description)
-    kind = description.coSimulation
+    stepped = description.coSimulation
+    kind = stepped or description.modelExchange
     return Fmu(
         name=description.modelName,
         ports=ports,
@@ -361,11 +365,12 @@ def _read(path: Path, sha256: str, directory: Path) -> Fmu:
         ours=ours,
         trusted=trusted,
         single=kind.canBeInstantiatedOnlyOncePerProcess,
-        fixed_step=not kind.canHandleVariableCommunicationStepSize,
+        fixed_step=bool(stepped and not stepped.canHandleVariableCommunicationStepSize),
         needs_tool=kind.needsExecutionTool,
         component=component,
         unsupported=unsupported_outputs(description),
         tolerance=tolerance,
+        exchange=None if stepped else exchange_of(description),
         given=Unpacked(
             path, sha256, directory, description.guid, kind.modelIdentifier, description.version or ""
         ),
@@ -386,13 +391,16 @@ def _first_line(error: Exception) -> str:
 
 def _check_runnable(path: Path, description: Any) -> None:
     """Refuse what the master cannot step."""
-    version, kind = description.fmiVersion, description.coSimulation
+    version, kind = description.fmiVersion, description.coSimulation or description.modelExchange
     if version == "1.0":
         raise LoomfmuError(f"{path}: an FMI 1.0 FMU; only FMI 2.0 and 3.0 are supported")
     if kind is None:
         raise LoomfmuError(
-            f"{path}: not a co-simulation FMU; only FMI 2.0 and 3.0 co-simulation is supported"
+            f"{path}: an FMU for scheduled execution; only co-simulation and model exchange are supported"
         )
+    clocks = [each.name for each in description.modelVariables if each.type == "Clock"]
+    if clocks and not description.coSimulation:
+        raise LoomfmuError(f"{path}: {clocks[0]} is a clock; model exchange with clocks is not supported")
     if not re.fullmatch("[A-Za-z_][A-Za-z0-9_]*", kind.modelIdentifier or ""):
         raise LoomfmuError(
             f"{path}: modelIdentifier = {shown(kind.modelIdentifier)} is not a C identifier;"

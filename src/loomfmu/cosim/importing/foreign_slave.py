@@ -10,7 +10,7 @@ import math
 from typing import TYPE_CHECKING, Any
 from weakref import WeakValueDictionary
 
-from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE, fmi2False
+from fmpy.fmi2 import fmi2CallbackFunctions, fmi2CallbackLoggerTYPE, fmi2False
 from fmpy.logging import addLoggerProxy
 
 from .calls import WARNING
@@ -48,7 +48,7 @@ class ForeignSlave(Slave):
         callbacks = fmi2CallbackFunctions(logger=_logger, componentEnvironment=id(self), **MEMORY)
         addLoggerProxy(ctypes.byref(callbacks))
         _instances[id(self)] = self
-        return self._instantiated(FMU2Slave, callbacks, self._resources(), fmi2False)
+        return self._instantiated(self._wrapper, callbacks, self._resources(), fmi2False)
 
     def _log(self, _environment: Any, _instance: bytes, status: int, _category: bytes, text: bytes) -> None:
         self._keep(status, text)

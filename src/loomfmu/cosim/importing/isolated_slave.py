@@ -119,7 +119,7 @@ class IsolatedSlave(Slave):
 
     # ---- life
 
-    def start(self, values: dict[str, Value], stop_time: float) -> None:
+    def start(self, values: dict[str, Value], stop_time: float, start_time: float = 0.0) -> None:
         """Instantiate the FMU, set the values and enter the initialization."""
         fmu = self.fmu
         known = (
@@ -128,6 +128,7 @@ class IsolatedSlave(Slave):
             "trusted",
             "needs_tool",
             "tolerance",
+            "exchange",
             "path",
             "directory",
             "guid",
@@ -138,7 +139,7 @@ class IsolatedSlave(Slave):
         self._forget_calls()
         starting = replace(self.limits, step=max(START, self.limits.step))
         self._ask("instantiate", facts | {"directory": fmu.directory.absolute()}, self.name, limits=starting)
-        self._ask("start", values, stop_time)
+        self._ask("start", values, stop_time, start_time)
         self.started = True
 
     def finish_initialization(self) -> None:

@@ -35,6 +35,10 @@ def borrow(fmu: "Fmu", name: str, limits: Limits | None = None) -> Slave:
 
 def opened(fmu: "Fmu", name: str) -> Slave:
     """A new instance in this process, of the class that fits its version and its vendor."""
+    if fmu.exchange:
+        from .model_exchange import Solved2, Solved3  # they need a solver
+
+        return (Solved3 if fmu.fmi == 3 else Solved2)(fmu, name)
     # most scenes have our own FMUs of FMI 2.0 alone
     if fmu.fmi == 3:
         from .fmi3_slave import Fmi3Slave

@@ -50,7 +50,6 @@ if TYPE_CHECKING:
     from .fmus import Fmu
 
 SIZES = {"Real": 8, "Integer": 4, "Boolean": 4}  # bytes of a value in the master's vectors
-_ZERO = ctypes.c_double(0.0)
 NEEDS_TOOL = "it says that it needs the tool that created it (needsExecutionTool = true)"
 MEMORY = {
     "allocateMemory": fmi2CallbackAllocateMemoryTYPE(calloc),
@@ -93,6 +92,9 @@ class Slave(Logged):
     keeps_calls = True  # whether prepared calls serve another run, too
     refuses_by_log = True  # whether what it logs as discarded or worse is a refusal, whatever it returns
     _state_word = "state"
+    _wrapper: Any = FMU2Slave  # fmpy's class for it
+    _interface = fmi2CoSimulation
+    _at = 0.0  # s, where it stands, if it is solved here
 
     def __init__(self, fmu: "Fmu", name: str):
         super().__init__(name)
@@ -153,7 +155,7 @@ class Slave(Logged):
         slave.callbacks = callbacks
         slave.component = slave.fmi2Instantiate(
             self.name.encode(),
-            fmi2CoSimulation,
+            self._interface,
             self.fmu.guid.encode(),
             resources.encode(),
             ctypes.byref(callbacks),
@@ -180,11 +182,11 @@ class Slave(Logged):
     def _complained(self, messages: Sequence[tuple[int, str]]) -> bool:
         return self.refuses_by_log and any(status >= DISCARD for status, _text in messages)
 
-    def start(self, values: dict[str, Value], stop_time: float) -> None:
+    def start(self, values: dict[str, Value], stop_time: float, start_time: float = 0.0) -> None:
         """Set the experiment up and the values, and enter the initialization."""
         self.forget_messages()
-        stop = ctypes.c_double(stop_time)
-        self._do(self._call, "SetupExperiment", *self._tolerance(), _ZERO, fmi2True, stop)
+        first, stop = ctypes.c_double(start_time), ctypes.c_double(stop_time)
+        self._do(self._call, "SetupExperiment", *self._tolerance(), first, fmi2True, stop)
         self.started = True
         for setting in self._settings_of(tuple(values)):
             setting.values[:] = [values[name] for name in setting.names]
@@ -207,7 +209,7 @@ class Slave(Logged):
         function = self._functions.get(name)
         if function is None:
             function = self._functions[name] = self._library[f"{self.standard}{name}"]
-        status = self.noted(f"{self.standard}{name}", 0.0, function, self._component, *arguments)
+        status = self.noted(f"{self.standard}{name}", self._at, function, self._component, *arguments)
         if not OK <= status <= WARNING:
             raise FMICallException(f"{self.standard}{name}", status)
 

@@ -1,7 +1,7 @@
 """The communication points of a run: equal steps, or points that were chosen."""
 
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,8 +33,8 @@ class Grid:
     """Communication points: equal steps, counted as integers so that nothing drifts, or `points` [s].
 
     `rate` is the number of equal steps, or of seconds of chosen points, in a revolution or whatever else the
-    scene counts its inputs in. `notes` tell how points were chosen, `scouted` is the number of steps of FMUs
-    that this took.
+    scene counts its inputs in, from the `start` [s] on. `notes` tell how points were chosen, `scouted` is the
+    number of steps of FMUs that this took.
     """
 
     steps: int
@@ -43,17 +43,18 @@ class Grid:
     points: Floats | None = None
     notes: tuple[str, ...] = ()
     scouted: int = 0
+    start: float = 0.0
 
     @property
     def stop_time(self) -> float:
         """The end [s]."""
-        return self.steps * self.step_size if self.points is None else float(self.points[-1])
+        return self.start + self.steps * self.step_size if self.points is None else float(self.points[-1])
 
     def span(self, first: int, count: int) -> Span:
         """A number of steps from one on."""
         if self.points is None:
             numbers = np.arange(first, first + count + 1, dtype=float)
-            times = numbers * self.step_size
+            times = self.start + numbers * self.step_size
             sizes = np.full(count, self.step_size)
             return Span(times[:-1], sizes, times[1:], numbers[1:] / self.rate)
         times = self.points[first : first + count + 1]
@@ -65,7 +66,7 @@ def uniform(scene: Scene, share: float = 1.0) -> Grid:
 
     Where kinks crowd the grid, a share of all points is taken instead: it would hardly be coarser.
     """
-    equal = Grid(scene.steps, scene.step_size, scene.steps_per_period)
+    equal = Grid(scene.steps, scene.step_size, scene.steps_per_period, start=scene.start_time)
     if share < 1.0:
         whole = uniform(scene)
         if whole.points is not None and crowded(scene, whole):
@@ -73,7 +74,12 @@ def uniform(scene: Scene, share: float = 1.0) -> Grid:
             return grid_of_points(scene, whole.points[np.round(places).astype(int)])
         steps = max(1, round(share * scene.steps))
         longer = scene.steps / steps
-        equal = Grid(steps, longer * scene.step_size, scene.steps_per_period / longer)
+        equal = replace(
+            equal,
+            steps=steps,
+            step_size=longer * scene.step_size,
+            rate=scene.steps_per_period / longer,
+        )
     divided = kinks(scene) / equal.step_size
     divided = divided[np.abs(divided - np.round(divided)) > SAME]
     if not len(divided):

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import LoomfmuError
+from ...fmi.system.loops import RULE
 from ..importing.calls import Rollback
 from ..importing.slave import Ended, Slave
 from ..scenes.graph import Wire
@@ -34,13 +35,6 @@ from .steppers import (
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int32]
 
-MOST_EXCHANGES = 50  # of a loop in one step: Broyden's method needs two or three where the loop is linear
-TOLERANCE = 1e-12  # of the value on a wire: what its two ends may differ by
-SMALL = 1e-14  # of the largest value so far, where that is more: rounding, for a value near zero
-ROUNDING = 1e-9  # of the largest value: what rounding may leave in a loop with a high gain, seen by
-FEW, STALLS = 8, 2  # what is left after FEW exchanges, which has not halved in the last ones
-ORDERS = 4  # a step begins with values that go on as a cubic: a value and its first three differences
-FLAT = 1e-8  # slope from which on it is taken for rounding: there is no way to a solution along it
 NOT_SETTLED, NOT_SAVED, NOT_RESTORED = -1, -2, -3  # how stepper.c says why a step could not be iterated
 HISTORY = 256  # samples over which an oscillation is followed
 FLIPS = 10  # in a row, each larger than the one before: an extremum of a smooth signal gives one
@@ -61,14 +55,14 @@ class Broyden:
     """Solves `outputs(inputs) = inputs` for the real values on the wires of a loop, by Broyden's method.
 
     What it has learnt of the loop's slopes is kept from one step to the next, and a step begins with values
-    that go on as over the last ones. Values that are not real are handed on as they are. The compiled stepper
+    that go on as over the last ones. Values that are not real are handed on as they are. `broyden.h`
     does the same arithmetic, to the last bit.
     """
 
     def __init__(self, reals: Floats, integers: Integers, slots: Sequence[int]):
         self._reals, self._integers, self._slots = reals, integers, list(slots)
         self.largest = np.zeros(len(slots))
-        self.differences = np.full((ORDERS, len(slots)), np.nan)  # of the values at the ends of steps
+        self.differences = np.full((RULE.orders, len(slots)), np.nan)  # of the values at the ends of steps
         self.inverse = -np.eye(len(slots))  # of the slopes of outputs(inputs) - inputs; at first: of -1
 
     def settle(self, exchange: Callable[[], None]) -> bool:
@@ -79,7 +73,7 @@ class Broyden:
         guess = self._extrapolated(self._reals[self._slots])
         change = residual = np.zeros(0)
         least, stalls = np.inf, 0
-        for number in range(MOST_EXCHANGES):
+        for number in range(RULE.most_exchanges):
             self._reals[self._slots] = guess
             others = self._integers.copy()
             exchange()
@@ -89,9 +83,9 @@ class Broyden:
             before, residual = residual, found - guess
             largest = np.maximum(self.largest, np.abs(found))
             left = np.max(np.abs(residual) / np.where(largest > 0.0, largest, 1.0), initial=0.0)
-            close = np.abs(residual) <= np.maximum(TOLERANCE * np.abs(found), SMALL * largest)
+            close = np.abs(residual) <= np.maximum(RULE.tolerance * np.abs(found), RULE.small * largest)
             stalls = stalls + 1 if left >= 0.5 * least else 0
-            rounded = number >= FEW and stalls >= STALLS and left <= ROUNDING
+            rounded = number >= RULE.few and stalls >= RULE.stalls and left <= RULE.rounding
             if (rounded or np.all(close)) and np.array_equal(others, self._integers):
                 self.largest[:] = largest
                 return True
@@ -114,7 +108,7 @@ class Broyden:
         """Let the slopes be those seen along the last change."""
         answer = np.array([_product(row, effect) for row in self.inverse])
         scale = _product(change, answer)
-        if abs(scale) > FLAT * _product(change, change):
+        if abs(scale) > RULE.flat * _product(change, change):
             seen = np.array([_product(change, column) for column in self.inverse.T])
             self.inverse += np.outer(change - answer, seen) / scale
 
@@ -137,7 +131,7 @@ class Loop:
     def unsettled(self, time: float) -> LoomfmuError:
         """Return the error to raise if the loop does not converge in the step from `time` [s] on."""
         return LoomfmuError(
-            f"loop {self.wires} did not converge at {time:.9g} s in {MOST_EXCHANGES} exchanges"
+            f"loop {self.wires} did not converge at {time:.9g} s in {RULE.most_exchanges} exchanges"
         )
 
 
@@ -177,17 +171,18 @@ class CompiledIteration(CompiledStepper):
         self._slaves = loop.slaves
         self._solver = Broyden(memory.reals, memory.integers, loop.slots)
         self._slots = np.array(loop.slots, dtype=np.int64)
-        self._room = np.zeros(6 * len(loop.slots))
+        self._room = np.zeros(7 * len(loop.slots))
         self._integers = np.empty_like(memory.integers)
         rollbacks = [found for slave in self._slaves if (found := slave.rollback())]
         self._rollbacks = (Rollback * len(self._slaves))(*rollbacks)
         solver = self._solver
-        memories = (solver.differences, solver.largest, solver.inverse, self._room, self._integers)
+        memories = (solver.largest, solver.differences, solver.inverse, self._room, self._integers)
         self._struct = _Loop(
             *(loop.first, loop.end),
             *(ctypes.addressof(self._rollbacks), len(self._rollbacks)),
-            *(self._slots.ctypes.data, len(self._slots)),
-            *(MOST_EXCHANGES, FEW, STALLS, ORDERS, TOLERANCE, SMALL, ROUNDING, FLAT),
+            self._slots.ctypes.data,
+            *RULE,
+            len(self._slots),
             *(each.ctypes.data for each in memories),
         )
         super().__init__(library, loop.actions, memory, ctypes.addressof(self._struct))
@@ -206,10 +201,12 @@ class CompiledIteration(CompiledStepper):
 class _Loop(ctypes.Structure):
     _fields_ = [
         *fields(first="size_t", end="size_t"),
-        *arrays("rollbacks", "slots"),
+        *arrays("rollbacks"),
+        *fields(slots="void_p"),
         *fields(most_exchanges="int64", few="int64", stalls="int64", orders="int64"),
         *fields(tolerance="double", small="double", rounding="double", flat="double"),
-        *fields(differences="void_p", largest="void_p", inverse="void_p", room="void_p", integers="void_p"),
+        *fields(count="size_t", largest="void_p", differences="void_p", inverse="void_p"),
+        *fields(room="void_p", integers="void_p"),
     ]
 
 

@@ -146,10 +146,10 @@ class Master:
     def _initialize(self) -> None:
         signals = self._signals
         for name, slave in self.slaves.items():
-            slave.start(self.scene.instances[name].values, self.grid.stop_time)
-        signals.begin()
+            slave.start(self.scene.instances[name].values, self.grid.stop_time, self.grid.start)
+        signals.begin(self.grid.start)
         calls = self._prepared()
-        start = Start(self.slaves, calls.inputs, calls.outputs, self.lagged, signals)
+        start = Start(self.slaves, calls.inputs, calls.outputs, self.lagged, signals, self.grid.start)
         start.make()
         self._start_warnings = start.warnings
         self._growth = Growth(self.lagged, signals.real_slots(self.lagged))
@@ -211,7 +211,11 @@ class Master:
             np.empty((rows, len(self._signals.reals))),
             np.empty((rows, len(self._signals.integers)), dtype=np.int32),
         )
-        times[0], values.reals[0], values.integers[0] = 0.0, self._signals.reals, self._signals.integers
+        times[0], values.reals[0], values.integers[0] = (
+            self.grid.start,
+            self._signals.reals,
+            self._signals.integers,
+        )
         handed, filled, step = 0, 1, 0
         due = perf_counter() + HOLD
         failure: LoomfmuError | None = None

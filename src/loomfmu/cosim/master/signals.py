@@ -89,14 +89,14 @@ class Signals:
         slots = [self.slots[drive.instance, drive.variable] for drive in self.scene.drives]
         return [slot for kind, slot in slots if (kind == "Real") is real]
 
-    def begin(self) -> None:
-        """The values before the first exchange: zeros, and those of driven inputs and shafts."""
+    def begin(self, time: float) -> None:
+        """The values before the first exchange: zeros, and those of driven inputs and shafts at the start."""
         self.reals[:], self.integers[:] = 0.0, 0
         if self.scene.drives:
             driven = self.driven(np.zeros(1))
             self.reals[self.driven_slots(real=True)] = driven.reals[0]
             self.integers[self.driven_slots(real=False)] = driven.integers[0]
-        self.turn_shafts(np.zeros(1), self.reals[np.newaxis, :])
+        self.turn_shafts(np.array([time]), self.reals[np.newaxis, :])
 
     def driven(self, turns: Floats) -> Rows:
         """The driven inputs at numbers of revolutions, along the columns those of `driven_slots`."""

@@ -11,9 +11,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ...fmi.system.loops import RULE
 from ..importing.slave import Slave
 from ..scenes.graph import Wire, step_order
-from .loops import MOST_EXCHANGES, ROUNDING, Broyden
+from .loops import Broyden
 from .signals import Signals
 from .steppers import Action, perform
 
@@ -22,7 +23,7 @@ from .steppers import Action, perform
 class Start:
     """The instances in the order of their steps, and the calls that hand over their inputs and outputs.
 
-    `warnings` tell where values do not agree at the start.
+    `time` is that of the start [s], `warnings` tell where values do not agree at the start.
     """
 
     slaves: Mapping[str, Slave]
@@ -30,6 +31,7 @@ class Start:
     outputs: Mapping[str, Sequence[Action]]
     lagged: Sequence[Wire]
     signals: Signals
+    time: float = 0.0
     warnings: list[str] = field(default_factory=list)
 
     def make(self) -> None:
@@ -38,9 +40,9 @@ class Start:
         closing = {wire.sink[0] for wire in self.lagged}
         first = next((place for place, name in enumerate(order) if name in closing), len(order))
         for name in order[:first]:
-            perform(self.inputs[name], 0.0)
+            perform(self.inputs[name], self.time)
             self.slaves[name].finish_initialization()
-            perform(self.outputs[name], 0.0)
+            perform(self.outputs[name], self.time)
         self._leave_loops(order[first:])
 
     def _leave_loops(self, names: Sequence[str]) -> None:
@@ -60,12 +62,14 @@ class Start:
             handed |= {wire: self._value(wire) for wire in within if wire.sink[0] == name}
             changed = self._leave(name)
         if not settled:
-            self.warnings.append(f"loop: the start values did not converge in {MOST_EXCHANGES} exchanges")
+            self.warnings.append(
+                f"loop: the start values did not converge in {RULE.most_exchanges} exchanges"
+            )
         self.warnings += [
             f"loop: {wire} changed after {wire.sink[0]} had left initialization;"
-            f" its sample at 0 s is based on the old value"
+            f" its sample at {self.time:.9g} s is based on the old value"
             for wire, value in handed.items()
-            if not math.isclose(value, self._value(wire), rel_tol=ROUNDING)
+            if not math.isclose(value, self._value(wire), rel_tol=RULE.rounding)
         ]
 
     def _value(self, wire: Wire) -> float:
@@ -76,14 +80,14 @@ class Start:
         """Let an instance leave initialization and read its outputs; whether any value is another one now."""
         reals, integers = self.signals.reals.copy(), self.signals.integers.copy()
         self.slaves[name].finish_initialization()
-        perform(self.outputs[name], 0.0)
+        perform(self.outputs[name], self.time)
         same = np.array_equal(reals, self.signals.reals, equal_nan=True)
         return not (same and np.array_equal(integers, self.signals.integers))
 
     def _exchange(self, names: Sequence[str]) -> bool:
         """Hand all outputs on until loops agree with themselves; where they cannot, hand them on once."""
         calls = [action for name in names for action in (*self.inputs[name], *self.outputs[name])]
-        perform(calls, 0.0)
+        perform(calls, self.time)
         lagged = [wire for wire in self.lagged if {wire.source[0], wire.sink[0]} <= set(names)]
         if not lagged:
             return True
@@ -91,10 +95,10 @@ class Start:
         first = reals.copy(), integers.copy()
         known = {name: len(self.slaves[name].messages) for name in names}
         solver = Broyden(reals, integers, self.signals.real_slots(lagged))
-        if solver.settle(lambda: perform(calls, 0.0)):
+        if solver.settle(lambda: perform(calls, self.time)):
             return True
         reals[:], integers[:] = first
-        perform(calls, 0.0)
+        perform(calls, self.time)
         for name, count in known.items():
             del self.slaves[name].messages[count:]  # of values that were only tried
         return False

@@ -158,7 +158,8 @@ def early_end(plan: Plan, ended: Ended | None) -> Early:
     """Return how an FMU ended a run early, if one did."""
     if ended is None:
         return Early()
-    share = f"{100.0 * ended.time / plan.grid.stop_time:.3g} %"
+    start, stop = plan.grid.start, plan.grid.stop_time
+    share = f"{100.0 * (ended.time - start) / (stop - start):.3g} %"
     short = f"the run ended at {share} of its length, by {ended.name}; set {MAY_END} = true if it may"
     return Early(f"{ended.name} at {ended.time:.9g} s", "" if plan.scene.may_end else short)
 

@@ -26,13 +26,13 @@ from .wiring import drives_of, wires_of
 class Scene:
     """A scene, checked against the FMUs it uses: every name is known, every value in SI and in bounds.
 
-    A period is a revolution of the main shaft, or a second in a scene that runs by seconds and has a
-    `step`: the run takes `periods` of them. `coupling` is how loops are closed, `grid` where the steps are,
-    with `coarse_steps_per_revolution` outside of the windows that the claims look into. With an `accuracy`
-    a run chooses its steps. `file` or the system package `package` is what it was read from,
-    `package_sha256` is the package's, `texts` are those of the other files that its text names, `overrides`
-    the values that differ from it, `notes` what the user is to be warned of. `tolerances` are the ends
-    between which values may lie, or tables of their distributions, as the scene states them. `isolated`
+    A period is a revolution of the main shaft, or a second in a scene that runs by seconds and has a `step`:
+    the run takes `periods` of them, from `start_time` [s] on. `coupling` is how loops are closed, `grid`
+    where the steps are, with `coarse_steps_per_revolution` outside of the windows that the claims look into.
+    With an `accuracy` a run chooses its steps. `file` or the system package `package` is what it was read
+    from, `package_sha256` is the package's, `texts` are those of the other files that its text names,
+    `overrides` the values that differ from it, `notes` what the user is to be warned of. `tolerances` are the
+    ends between which values may lie, or tables of their distributions, as the scene states them. `isolated`
     says whether FMUs run in processes of their own; by default third-party ones do.
     A call of such an FMU may take `step_timeout`, and a whole run `run_timeout` [s]. Where an FMU `may_end`
     the run early, claims are judged on what there is.
@@ -52,6 +52,7 @@ class Scene:
     claims: list[dict[str, Any]]
     tolerances: dict[str, Any] = field(default_factory=dict)
     step: float | None = None
+    start_time: float = 0.0
     coupling: str = LAGGED
     grid: str = UNIFORM
     coarse_steps_per_revolution: int = 24

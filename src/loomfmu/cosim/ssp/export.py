@@ -1,4 +1,4 @@
-"""A scene as a system package (SSP 1.0) for other tools.
+"""A scene as a system package for other tools: SSP 1.0, or SSP 2.0 where its FMUs are of FMI 3.0.
 
 It holds the FMUs, the wiring with units and a diagram, the values of each instance as a parameter set, the
 step in the annotations that the Open Simulation Platform and OMSimulator read, and the text of the scene in
@@ -26,7 +26,20 @@ from ..scenes.headings import heading
 from ..scenes.instances import Instance
 from ..scenes.scene import Scene, files_of
 from .layout import Box, bends, layout
-from .xml import FMU, OMS, OSP, OURS, PARAMETER_SET, SSD_FILE, root, write_units
+from .outside import add_connectors, outer_connectors
+from .xml import (
+    FMU,
+    OMS,
+    OSP,
+    OURS,
+    PARAMETER_SET,
+    SSD_FILE,
+    connector,
+    of_ssp_2,
+    root,
+    stated_unit,
+    write_units,
+)
 
 PACKAGE = zip_with("a system package of loomfmu", SSD_FILE, ".ssp")
 SET_NAME = "parameters"  # of every instance's set: ecos takes all sets of one name, libcosim the first
@@ -40,12 +53,15 @@ def export(
     flavour: str | None = None,
     platforms: tuple[str, ...] | None = None,
     overwrite: bool = False,
+    fmi: int = 2,
+    connectors: bool = False,
 ) -> list[str]:
     """Write a scene as a system package, and return warnings about what other tools will do differently.
 
     `flavour` is "live" or "native", native by default if such FMUs can be built; `platforms` are those of
-    native ones, all by default. The same scene gives the same bytes. `overwrite` replaces a file that is
-    not a system package of ours.
+    native ones, all by default, `fmi` the version of FMI that these are for. With `connectors` the system has
+    some, which libcosim and ecos reject. The same scene gives the same bytes. `overwrite` replaces a file
+    that is not a system package of ours.
 
     Raises:
         LoomfmuError: an FMU cannot be built, the scene is a package itself, or the file cannot be written
@@ -56,7 +72,10 @@ def export(
         raise LoomfmuError(f"{own} judges a claim, and a system package holds no Python files; leave it out")
     inputs = files_of(scene)
     check_target(path, PACKAGE, inputs, overwrite)  # before the FMUs are built
-    content = fmu_files.zipped(contents(scene, flavour or default_flavour(scene), platforms))
+    flavour = flavour or default_flavour(scene)
+    if flavour == "live" and fmi != 2:
+        raise LoomfmuError("live FMUs are of FMI 2.0: choose native ones for FMI 3.0")
+    content = fmu_files.zipped(contents(scene, flavour, platforms, fmi, connectors))
     write_file(path, content, PACKAGE, inputs, overwrite)
     return [*scene.notes, *_driven(scene), *_enumerated(scene)]
 
@@ -86,25 +105,35 @@ def default_flavour(scene: Scene) -> str:
     return "live" if lacking else "native"
 
 
-def contents(scene: Scene, flavour: str, platforms: tuple[str, ...] | None = None) -> Files:
+def contents(
+    scene: Scene,
+    flavour: str,
+    platforms: tuple[str, ...] | None = None,
+    fmi: int = 2,
+    connectors: bool = False,
+) -> Files:
     """All files of the package by their names in it."""
     files: Files = {}
     sources: dict[str, str] = {}
+
+    def written(document: Element) -> bytes:
+        return text_of(of_ssp_2(document) if fmi == 3 else document)
+
     for name, instance in scene.instances.items():
-        file = _file(instance.fmu, flavour, platforms or tuple(native.PLATFORMS))
+        file = _file(instance.fmu, flavour, platforms or tuple(native.PLATFORMS), fmi)
         sources[name] = _place(files, file)
         values = _values(scene, instance)
         if values:
-            files[f"resources/{name}.ssv"] = text_of(_parameter_set(instance, values))
-    files[SSD_FILE] = text_of(_structure(scene, sources, files))
+            files[f"resources/{name}.ssv"] = written(_parameter_set(instance, values))
+    files[SSD_FILE] = written(_structure(scene, sources, files, connectors))
     return files
 
 
-def _file(fmu: Fmu, flavour: str, platforms: tuple[str, ...]) -> Path:
+def _file(fmu: Fmu, flavour: str, platforms: tuple[str, ...], fmi: int) -> Path:
     """The file of an FMU: built in that flavour, or the one that the scene names."""
     if fmu.component is None or not fmu.built:
         return fmu.path
-    return fmus.file_of(fmu.component, flavour, platforms)
+    return fmus.file_of(fmu.component, flavour, platforms, fmi)
 
 
 def _place(files: Files, file: Path) -> str:
@@ -156,7 +185,7 @@ def _parameter_set(instance: Instance, values: dict[str, Value]) -> Element:
             SubElement(parameter, "ssv:Enumeration", value=port.choice(value))
             continue
         attributes = {"value": str(value).lower() if port.kind == "Boolean" else repr(value)}
-        if port.kind == "Real" and port.has_unit and port.definition is not None:
+        if stated_unit(port) and port.definition is not None:
             attributes["unit"] = port.unit
             units[port.unit] = port.definition
         SubElement(parameter, f"ssv:{port.kind}", attributes)
@@ -167,7 +196,7 @@ def _parameter_set(instance: Instance, values: dict[str, Value]) -> Element:
 # ---- structure
 
 
-def _structure(scene: Scene, sources: dict[str, str], files: Files) -> Element:
+def _structure(scene: Scene, sources: dict[str, str], files: Files, connectors: bool) -> Element:
     prefixes = ("ssd", "ssc", "osp", "oms", "loomfmu")
     document = root(
         "ssd:SystemStructureDescription",
@@ -191,7 +220,10 @@ def _structure(scene: Scene, sources: dict[str, str], files: Files) -> Element:
     _connections(system, scene, boxes)
     _master(system, scene)
     every = [port for ins, outs in ports.values() for port in (*ins, *outs)]
-    used = {p.unit: p.definition for p in every if p.kind == "Real" and p.has_unit and p.definition}
+    if connectors:
+        add_connectors(system, outer := outer_connectors(scene))
+        every += [each.port for each in outer]
+    used = {p.unit: p.definition for p in every if stated_unit(p) and p.definition}
     write_units(document, "ssd:Units", used)
     _experiment(document, scene)
     return document
@@ -234,10 +266,8 @@ def _component(
             ("output", "1", ports[1], box.outputs),
         ):
             for port in chosen:
-                connector = SubElement(listed, "ssd:Connector", name=port.own, kind=kind)
-                stated = port.kind == "Real" and port.has_unit and port.definition is not None
-                SubElement(connector, f"ssc:{port.kind}", {"unit": port.unit} if stated else {})
-                SubElement(connector, "ssd:ConnectorGeometry", x=x, y=repr(round(heights[port.name], 6)))
+                written = connector(listed, port.own, kind, port)
+                SubElement(written, "ssd:ConnectorGeometry", x=x, y=repr(round(heights[port.name], 6)))
     SubElement(
         component,
         "ssd:ElementGeometry",

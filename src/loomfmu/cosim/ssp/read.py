@@ -20,10 +20,11 @@ from ..importing.conversions import SAME, Stated
 from ..importing.descriptions import plain_names
 from ..importing.fmus import Fmu
 from ..importing.ports import conversion
+from ..scenes.graph import LATEST
 from ..scenes.instance_tables import overridden, override, prevailing, state_units, unit_of
 from ..scenes.instances import TOLERANCE, Instance, check_name
 from ..scenes.scene import Scene, assemble
-from ..scenes.settings import DEEPEST, TIMES, toml
+from ..scenes.settings import DEEPEST, TIMES, UNIFORM, toml
 from .connections import Nets
 from .package import Package
 from .structure import Node, connectors, joining, stated_by, structure, systems
@@ -64,6 +65,10 @@ class _Reader:
         self.notes: list[str] = []
         self.unitless: list[str] = []  # values with a unit for variables without one
         self.root = structure(package)
+        experiment = self.root.find(full("ssd:DefaultExperiment"))
+        self.start_time = 0.0 if experiment is None else real(experiment, "startTime", 0.0)
+        if abs(self.start_time) > LATEST:
+            raise LoomfmuError(f"startTime = {self.start_time:g} s is not within {LATEST:g} s")
         self.units = read_units(self.root.iterfind(full("ssd:Units")))
 
     def scene(self, overrides: dict[str, Any]) -> Scene:
@@ -91,6 +96,8 @@ class _Reader:
         wires = nets.wires
         if text and text.get("claims") and any(transformed(each, "") != SAME for each in self.root.iter()):
             raise LoomfmuError("a connection transforms its value, so the claims cannot be judged")
+        if self.start_time and overrides.get("grid", UNIFORM) != UNIFORM:
+            raise LoomfmuError(f"it starts at {self.start_time:g} s, so that it runs on a uniform grid alone")
         tables = self._foreign_tables() if annotation is None else _our_tables(text or {}, annotation)
         if text is not None:
             for instance in instances.values():
@@ -107,6 +114,7 @@ class _Reader:
             text=written or "",
             directory=path.parent,
             package=path,
+            start_time=self.start_time,
             package_sha256=self.package.sha256,
             notes=tuple(self.notes),
             overrides=dict(overrides),
@@ -200,12 +208,10 @@ class _Reader:
         tables: dict[str, Any] = {"title": self.root.get("name") or self.package.path.stem}
         if experiment is None:
             return tables
-        if real(experiment, "startTime", 0.0) != 0.0:
-            raise LoomfmuError(f"it starts at {experiment.get('startTime')} s; runs start at 0 s")
         algorithm = _annotation(experiment, OSP, "osp:Algorithm")
         fixed = algorithm.find(full("osp:FixedStepAlgorithm")) if algorithm is not None else None
         if experiment.get("stopTime") is not None:
-            tables["duration"] = real(experiment, "stopTime", 0.0)
+            tables["duration"] = real(experiment, "stopTime", 0.0) - self.start_time
         if fixed is not None:
             required(fixed, "baseStepSize")
             tables["step"] = real(fixed, "baseStepSize", 0.0)

@@ -1,12 +1,15 @@
-"""Names and units as XML, for the writer and the reader of system packages (SSP 1.0)."""
+"""Names and units as XML, for the writer and the reader of system packages."""
 
 import math
 from collections.abc import Iterable
 from xml.etree.ElementTree import Element, SubElement
 
 from ...errors import LoomfmuError, shown
+from ...fmi.description.model_description import FMI3_TYPES
 from ...fmi.description.parameter_sets import SSC, SSV
+from ...fmi.description.references import FMI_TYPES
 from ..importing.conversions import BASES, SAME, Definition, Linear
+from ..importing.ports import Port
 
 SSD_FILE = "SystemStructure.ssd"
 PARAMETER_SET = "application/x-ssp-parameter-set"
@@ -15,6 +18,7 @@ SSP = "application/x-ssp-package"
 OSP = "com.opensimulationplatform"  # annotation of the Open Simulation Platform: the step
 OMS = "org.openmodelica"  # annotation of OMSimulator: its master and its step
 OURS = "org.pypi.loomfmu"  # our own annotation: the text of the scene
+TYPES_3 = {FMI_TYPES[kind]: name for kind, name in FMI3_TYPES.items()}  # what FMUs of FMI 3.0 have instead
 NAMESPACES = {
     "ssd": "http://ssp-standard.org/SSP1/SystemStructureDescription",
     "ssc": SSC,
@@ -33,6 +37,15 @@ def root(tag: str, *prefixes: str, **attributes: str) -> Element:
     return Element(tag, spaces | attributes)
 
 
+def of_ssp_2(document: Element) -> Element:
+    """The same document of SSP 2.0, which has the types of FMI 3.0."""
+    document.set("version", "2.0")
+    for element in document.iter():
+        prefix, _, kind = element.tag.partition(":")
+        element.tag = f"{prefix}:{TYPES_3.get(kind, kind)}"
+    return document
+
+
 def full(name: str) -> str:
     """A prefixed name as ElementTree reads it.
 
@@ -41,6 +54,18 @@ def full(name: str) -> str:
     """
     prefix, _, tag = name.partition(":")
     return f"{{{NAMESPACES[prefix]}}}{tag}"
+
+
+def connector(parent: Element, name: str, kind: str, port: Port) -> Element:
+    """Write a connector of a variable, with its type and its unit."""
+    element = SubElement(parent, "ssd:Connector", name=name, kind=kind)
+    SubElement(element, f"ssc:{port.kind}", {"unit": port.unit} if stated_unit(port) else {})
+    return element
+
+
+def stated_unit(port: Port) -> bool:
+    """Return whether a package states the unit of a variable."""
+    return port.kind == "Real" and port.has_unit and port.definition is not None
 
 
 def write_units(parent: Element, tag: str, units: dict[str, Definition]) -> None:

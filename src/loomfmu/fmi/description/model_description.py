@@ -51,7 +51,7 @@ def _interfaces(root: Element, component: type[Component], native: dict[str, str
         "canSerializeFMUstate": "true",
     }
     if native is not None:
-        capabilities["providesDirectionalDerivative"] = "true"
+        capabilities["providesDirectionalDerivative"] = str(component.derivatives).lower()
     steps = {"canHandleVariableCommunicationStepSize": "true", "canInterpolateInputs": "false"}
     interfaces = {"CoSimulation": capabilities | steps | (native or {})}
     if native is not None and component.keeps == NOTHING:
@@ -216,8 +216,8 @@ def model_description3(component: type[Component], token: str, version: str) -> 
         "modelIdentifier": name,
         "canGetAndSetFMUState": "true",
         "canSerializeFMUState": "true",
-        "providesDirectionalDerivatives": "true",
-        "providesAdjointDerivatives": "true",
+        "providesDirectionalDerivatives": str(component.derivatives).lower(),
+        "providesAdjointDerivatives": str(component.derivatives).lower(),
     }
     if component.keeps == NOTHING:
         SubElement(root, "ModelExchange", common | {"needsCompletedIntegratorStep": "true"})

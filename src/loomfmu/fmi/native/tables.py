@@ -74,6 +74,7 @@ static const Problem problems[PROBLEMS + 1] = {{
 
 static const char *const categories[CATEGORIES] = {{{categories}}};
 
+{loop}
 #endif
 """
 
@@ -110,11 +111,13 @@ class Part:
     problems: int
 
 
-def tables(component: type[Component], token: str, parts: Sequence[Part] = (), inner_step: str = "") -> str:
+def tables(
+    component: type[Component], token: str, parts: Sequence[Part] = (), inner_step: str = "", loop: str = ""
+) -> str:
     """The text of model.h; `token` is the identity that a host must show.
 
     `parts` are those of a system of components, one component is a part by itself; `inner_step` is the
-    expression in C for the step of a system that has a grid of its own.
+    expression in C for the step of a system that has a grid of its own, `loop` defines its loop.
     """
     name = component.__name__
     parts = parts or _itself(component)
@@ -141,10 +144,11 @@ def tables(component: type[Component], token: str, parts: Sequence[Part] = (), i
         at_step_end=at_step_end,
         rows="\n".join(_row(variable, names) for variable in variables),
         problems="".join(
-            f"    {{{_text(problem.text)}, {str(problem.warning).lower()}}},\n"
+            f"    {{{text(problem.text)}, {str(problem.warning).lower()}}},\n"
             for problem in component.problems
         ),
-        categories=", ".join(_text(CATEGORIES[status][0]) for status in (WARNING, DISCARD, ERROR)),
+        loop=loop or "#define LOOP_VALUES 0\n",
+        categories=", ".join(text(CATEGORIES[status][0]) for status in (WARNING, DISCARD, ERROR)),
     )
 
 
@@ -182,13 +186,13 @@ def _offset(variable: Variable, struct: str = "Component") -> str:
 
 def _row(variable: Variable, names: list[str]) -> str:
     fields = (
-        _text(variable.name),
+        text(variable.name),
         KINDS[variable.type],
         variable.causality.upper(),
         variable.variability.upper(),
         _offset(variable),
         *(repr(float(limit)) for limit in variable.limits),
-        _text(variable.display),
+        text(variable.display),
         repr(float(units.unit(variable.display).factor)),
         "NONE" if variable.rate is None else str(names.index(variable.rate)),
     )
@@ -205,6 +209,6 @@ def _check_problems(component: type[Component], names: list[str]) -> None:
                 )
 
 
-def _text(text: str) -> str:
+def text(text: str) -> str:
     """A C string; outside ASCII as its UTF-8 bytes stand in the file."""
     return json.dumps(text, ensure_ascii=False)

@@ -9,6 +9,7 @@ from ..native.c_code import PRODUCT, REAL, SUM, TYPES, WHOLE, Code, c_name, lite
 from ..native.c_numbers import PLAIN, Numbers
 from ..native.tables import Part as Stepped
 from ..native.translate import Translation, Written, translate
+from .loops import RULE
 from .system import SPEED, STEP, STEPS, Drive, Part, System, limited, problems_of
 
 
@@ -32,12 +33,26 @@ def _written(system: System, parts: list[Written], numbers: Numbers) -> Written:
     prefix = numbers.prefix
     grid = f"    {numbers.type} {STEP};" if system.step else f"    {TYPES['int']} {STEPS};"
     members = [f"    struct {prefix}{part.component.__name__} {c_name(part.name)};" for part in system.parts]
-    struct = "\n".join([f"struct {prefix}{system.name} {{", grid, *members, "};"])
+    kept = list(_memory(system, numbers)) if system.closing else []
+    members += [f"    {prefix}LoopMemory loop;"] if kept else []
+    struct = "\n".join([*kept, f"struct {prefix}{system.name} {{", grid, *members, "};"])
     included = f'#include "{prefix}grid.h"\n'
     return Written(
         "\n\n".join([*(each.struct for each in parts), struct]),
         "\n".join([included, *(each.functions for each in parts), *_functions(system, numbers)]),
     )
+
+
+def _memory(system: System, numbers: Numbers) -> Iterator[str]:
+    """The struct of what a system keeps of its loop from step to step."""
+    values, reals = len(system.closing_sources), max(1, system.closing_reals)
+    yield "typedef struct {"
+    yield f"    {numbers.type} values[{values}];"
+    if numbers is PLAIN:
+        yield f"    double largest[{reals}];"
+        yield f"    double differences[{RULE.orders * reals}];"
+        yield f"    double inverse[{reals * reals}];"
+    yield f"}} {numbers.prefix}LoopMemory;\n"
 
 
 def stepped(system: System) -> list[Stepped]:
@@ -113,19 +128,20 @@ def _place(name: str) -> str:
 
 def _member(system: System, name: str) -> str:
     """Return the place of a variable `part.variable` in the struct."""
-    owner, _, variable = name.partition(".")
-    (part,) = (each for each in system.parts if each.name == owner)
-    (found,) = (each for each in variables_of(part.component) if each.name == variable)
-    return _place(f"{owner}.{found.member}")
+    return _place(f"{name.partition('.')[0]}.{system.variable(name).member}")
 
 
 def _wires(system: System, part: Part, numbers: Numbers) -> Iterator[str]:
     """Copies of what a part is wired to; the number of the first input outside its limits."""
     if not any(sink.startswith(f"{part.name}.") for sink in system.wires):
         yield "(void)self;"
+    closing, sources = dict(system.closing), system.closing_sources
     for each in variables_of(part.component):
         name = f"{part.name}.{each.name}"
-        if name in system.wires:
+        if name in closing:
+            place = f"self->loop.values[{sources.index(closing[name])}]"
+            yield f"{_place(f'{part.name}.{each.member}')} = {_as(each.type, Code(place, REAL), numbers)};"
+        elif name in system.wires:
             yield f"{_place(f'{part.name}.{each.member}')} = {_member(system, system.wires[name])};"
     for number, each in enumerate(limited(system, part), start=len(part.component.problems) + 1):
         yield f"if (!({_within(part, each, numbers)})) {{"
@@ -174,10 +190,15 @@ def _drives(system: System, this: str, numbers: Numbers) -> Iterator[str]:
 def _driven(drive: Drive, place: int, numbers: Numbers) -> str:
     along = f"{numbers.prefix}grid_{'held' if drive.held else 'between'}"
     code = Code(f"{along}(points_{place}, values_{place}, {len(drive.points)}, place)", REAL)
-    kind, value = type(drive.values[0]), numbers.value(code).text
+    return _as(type(drive.values[0]), code, numbers)
+
+
+def _as(kind: type, real: Code, numbers: Numbers) -> str:
+    """A real number as a variable of another type."""
+    value = numbers.value(real).text
     if kind is bool:
         return f"{value} > 0.0"
-    return f"({TYPES[kind.__name__]}){value}" if kind is int else code.text
+    return f"({TYPES[kind.__name__]}){value}" if kind is int else real.text
 
 
 def _table(what: str, place: int, numbers: Iterable[float]) -> str:

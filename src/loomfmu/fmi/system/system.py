@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cached_property
 from typing import Any
 
 from ...declaring.declarations import parameter
@@ -54,6 +54,32 @@ class System:
     steps: int = 0
     step: float = 0.0
 
+    @cached_property
+    def closing(self) -> list[tuple[str, str]]:
+        """The wires that close a loop, each as its sink and its source, in the order of the steps."""
+        place = {part.name: number for number, part in enumerate(self.parts)}
+        wires = [(sink, source, place[sink.partition(".")[0]]) for sink, source in self.wires.items()]
+        closing = [wire for wire in wires if place[wire[1].partition(".")[0]] >= wire[2]]
+        return [(sink, source) for sink, source, _ in sorted(closing, key=lambda wire: wire[2])]
+
+    @cached_property
+    def closing_sources(self) -> list[str]:
+        """The sources of these wires, real ones first."""
+        sources = dict.fromkeys(source for _, source in self.closing)
+        return sorted(sources, key=lambda source: self.variable(source).type is not float)
+
+    @property
+    def closing_reals(self) -> int:
+        """The number of these sources that are real."""
+        return sum(self.variable(source).type is float for source in self.closing_sources)
+
+    def variable(self, name: str) -> Variable:
+        """The declaration of a variable `part.variable` in its component."""
+        owner, _, variable = name.partition(".")
+        (part,) = (each for each in self.parts if each.name == owner)
+        (found,) = (each for each in variables_of(part.component) if each.name == variable)
+        return found
+
     @property
     def problem(self) -> Problem:
         """The problem that is reported if the grid has no steps."""
@@ -73,6 +99,7 @@ def component_of(system: System) -> type[Component]:
         "terminals": tuple(_terminals(system, {v.name: v for v in variables})),
         "needs": {v.name: reach(v.name) for v in variables if v.causality == "output"},
         "experiment": system.experiment,
+        "derivatives": not system.closing,
     }
     return type(system.name, (Component,), members)
 
@@ -121,17 +148,23 @@ def _reach(system: System) -> Reach:
     # a communication step may hold several of the system's
     needs = {part.name: dependencies(part.component, many_steps=True) for part in system.parts}
 
-    @cache
-    def reach(name: str) -> frozenset[str]:
+    def sources(name: str) -> list[str]:
         owner, _, variable = name.partition(".")
         if name in system.wires:
-            return reach(system.wires[name])
-        if name in system.drives or variable == TIME:
-            return frozenset({TIME})
-        if names[name] == "input":
-            return frozenset({name})
-        needed = needs[owner][variable] if names[name] == "output" else ()
-        return frozenset[str]().union(*(reach(f"{owner}.{each}") for each in needed))
+            return [system.wires[name]]
+        if name in system.drives:
+            return [TIME]
+        needed = needs[owner][variable] if names.get(name) == "output" else ()
+        return [TIME if each == TIME else f"{owner}.{each}" for each in needed]
+
+    def reach(name: str) -> frozenset[str]:
+        found, left = {name}, [name]  # wires may close a loop
+        while left:
+            new = {*sources(left.pop())} - found
+            found |= new
+            left += new
+        leaves = (each for each in found if names.get(each) == "input" and not sources(each))
+        return frozenset(leaves) | (found & {TIME})
 
     return reach
 

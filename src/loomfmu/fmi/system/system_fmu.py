@@ -14,7 +14,14 @@ from ..native import native_fmu as native
 from ..native.libraries import module_of
 from ..native.tables import dual_tables, tables
 from .code import inner_step, stepped, translated
+from .loops import RULE, loop_of
 from .system import STEP, STEPS, System, component_of
+
+LOOP = """ These wires close an algebraic loop, so the
+parts of a step that lie on it are repeated until both ends agree to {tolerance:g}:
+
+{wires}
+"""
 
 ICON = Path(__file__).with_name("icon.png")
 
@@ -25,7 +32,7 @@ README = """# {title}
 ## What is inside
 
 The components below in one library, translated to C. Sources are stepped before their sinks, and a wire hands
-over the value at the end of the step: there is no delay between components.
+over the value at the end of the step: there is no delay between components.{loop}
 
 | instance | component | what it is |
 |---|---|---|
@@ -53,7 +60,7 @@ def contents(system: System, platforms: tuple[str, ...], fmi: int) -> dict[str, 
     component = component_of(system)
     translation = translated(system)
     token = _token(component, translation.header + translation.code)
-    model = tables(component, token, stepped(system), inner_step(system))
+    model = tables(component, token, stepped(system), inner_step(system), loop_of(system, component))
     dual_model = dual_tables(component, stepped(system))
     documents = {
         native.ICONS[fmi]: ICON.read_bytes(),
@@ -84,13 +91,17 @@ def _readme(system: System, component: type[Component], fmi: int) -> str:
         f"| `{part.name}` | {part.component.__name__} | {(part.component.__doc__ or '').splitlines()[0]} |"
         for part in system.parts
     )
-    wires = "\n".join(f"- `{source}` to `{sink}`" for sink, source in system.wires.items())
+    wires, closing = (
+        "\n".join(f"- `{source}` to `{sink}`" for sink, source in each)
+        for each in (system.wires.items(), system.closing)
+    )
     driven = "\n".join(
         f"- `{sink}` follows a table of {len(drive.points)} points" for sink, drive in system.drives.items()
     )
     readme = README.format(
         title=system.title,
         description=system.description,
+        loop=LOOP.format(tolerance=RULE.tolerance, wires=closing) if closing else "",
         parts=parts,
         wires="\n".join(filter(None, (wires, driven))),
         grid=f"`{STEP if system.step else STEPS}`",

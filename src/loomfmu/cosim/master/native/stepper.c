@@ -14,6 +14,7 @@
 #define EXPORT __attribute__((visibility("default")))
 #endif
 
+#include "../../../fmi/native/shell/broyden.h"
 #include "tangents.h"
 
 enum { VALUES, STEP, SET_3, GET_3, STEP_3, CONVERT }; /* what a call does: FMI 2.0, FMI 3.0, on a wire */
@@ -65,13 +66,9 @@ struct loop { /* calls that are repeated until they agree with themselves */
     const struct rollback *rollbacks;
     size_t rollback_count;
     const int64_t *slots; /* where the values on its wires stand among the reals */
-    size_t count;
-    int64_t most_exchanges, few, stalls, orders;
-    double tolerance, small, rounding, flat; /* as loops.py describes them */
-    double *differences; /* orders by count: of the values at the ends of steps; NaN where there were none */
-    double *largest;     /* magnitude of each value so far */
-    double *inverse;     /* count by count: of the slopes of what comes out less what went in */
-    double *room;        /* six vectors */
+    struct rule rule;
+    struct solver solver;
+    double *room; /* for the vectors of a search */
     int32_t *integers;
 };
 
@@ -223,35 +220,6 @@ static bool perform_all(const struct plan *plan, size_t first, size_t end, doubl
     return true;
 }
 
-static double product(const double *one, const double *other, size_t count)
-{
-    double sum = 0.0;
-    for (size_t place = 0; place < count; place++)
-        sum += one[place] * other[place];
-    return sum;
-}
-
-/* Let the slopes be those seen along the last change: Broyden's method. */
-static void learn(const struct loop *loop, const double *change, const double *effect, double *answer,
-                  double *row)
-{
-    size_t count = loop->count;
-    for (size_t place = 0; place < count; place++)
-        answer[place] = product(&loop->inverse[place * count], effect, count);
-    double scale = product(change, answer, count);
-    if (!(fabs(scale) > loop->flat * product(change, change, count)))
-        return;
-    for (size_t column = 0; column < count; column++) {
-        row[column] = 0.0;
-        for (size_t place = 0; place < count; place++)
-            row[column] += change[place] * loop->inverse[place * count + column];
-    }
-    for (size_t place = 0; place < count; place++)
-        for (size_t column = 0; column < count; column++)
-            loop->inverse[place * count + column] +=
-                (change[place] - answer[place]) * row[column] / scale;
-}
-
 static bool roll(const struct plan *plan, bool back, struct outcome *outcome)
 {
     const struct loop *loop = plan->loop;
@@ -268,91 +236,41 @@ static bool roll(const struct plan *plan, bool back, struct outcome *outcome)
     return true;
 }
 
-/* A value a step further, from that at its start and the differences that are known. */
-static double extrapolated(const struct loop *loop, size_t place, double value)
-{
-    double guess = 0.0;
-    for (int64_t order = 0; order < loop->orders && !isnan(value); order++) {
-        double *kept = &loop->differences[(size_t)order * loop->count + place];
-        double difference = value - *kept;
-        guess += value;
-        *kept = value;
-        value = difference;
-    }
-    return guess;
-}
-
-/* Compare what came out with the guess that went in. Sets the residual and what it differs by from the one
- * before, and as a share of the largest values how much is left; whether it is within the tolerance. */
-static bool close_enough(const struct plan *plan, const double *guess, double *residual, double *effect,
-                         double *left)
+/* Copy the values on the wires of the loop out of the reals, or into them. */
+static void move_values(const struct plan *plan, double *values, bool out)
 {
     const struct loop *loop = plan->loop;
-    bool close = true;
-    *left = 0.0;
-    for (size_t place = 0; place < loop->count; place++) {
-        double found = plan->reals[loop->slots[place]], before = residual[place];
-        double largest = fmax(loop->largest[place], fabs(found));
-        residual[place] = found - guess[place];
-        effect[place] = residual[place] - before;
-        *left = fmax(*left, fabs(residual[place]) / (largest > 0.0 ? largest : 1.0));
-        if (!(fabs(residual[place]) <= fmax(loop->tolerance * fabs(found), loop->small * largest)))
-            close = false;
+    for (size_t place = 0; place < loop->solver.count; place++) {
+        double *real = &plan->reals[loop->slots[place]];
+        *(out ? &values[place] : real) = *(out ? real : &values[place]);
     }
-    return close;
-}
-
-static bool all_finite(const struct plan *plan)
-{
-    for (size_t place = 0; place < plan->loop->count; place++)
-        if (!isfinite(plan->reals[plan->loop->slots[place]]))
-            return false;
-    return true;
 }
 
 /* Repeat the calls of the loop until what comes out of them is what went in. */
 static bool settle(const struct plan *plan, double start, double size, struct outcome *outcome)
 {
     const struct loop *loop = plan->loop;
-    size_t count = loop->count;
-    double *guess = loop->room, *change = guess + count, *residual = change + count;
-    double *effect = residual + count, *answer = effect + count, *row = answer + count;
-    double least = INFINITY, left;
-    int64_t stalls = 0;
+    const size_t wholes = plan->integer_count * sizeof(int32_t);
+    enum progress progress = AGAIN;
 
     if (!roll(plan, false, outcome))
         return false;
-    for (size_t place = 0; place < count; place++)
-        guess[place] = extrapolated(loop, place, plan->reals[loop->slots[place]]);
-    for (int64_t exchange = 0; exchange < loop->most_exchanges; exchange++) {
-        for (size_t place = 0; place < count; place++)
-            plan->reals[loop->slots[place]] = guess[place];
-        memcpy(loop->integers, plan->integers, plan->integer_count * sizeof(int32_t));
-        if (exchange && !roll(plan, true, outcome))
+    move_values(plan, loop->room, true);
+    struct search search = broyden_begin(&loop->rule, &loop->solver, loop->room, loop->room);
+    while (progress == AGAIN) {
+        if (search.exchanges && !roll(plan, true, outcome))
             return false;
+        move_values(plan, search.guess, false);
+        memcpy(loop->integers, plan->integers, wholes);
         if (!perform_all(plan, loop->first, loop->end, start, size, outcome))
             return false;
-        if (!all_finite(plan))
-            break;
-        bool close = close_enough(plan, guess, residual, effect, &left);
-        stalls = left >= 0.5 * least ? stalls + 1 : 0;
-        bool rounded = exchange >= loop->few && stalls >= loop->stalls && left <= loop->rounding;
-        if ((close || rounded) &&
-            !memcmp(loop->integers, plan->integers, plan->integer_count * sizeof(int32_t))) {
-            for (size_t place = 0; place < count; place++)
-                loop->largest[place] = fmax(loop->largest[place], fabs(plan->reals[loop->slots[place]]));
-            return true;
-        }
-        least = fmin(least, left);
-        if (exchange)
-            learn(loop, change, effect, answer, row);
-        for (size_t place = 0; place < count; place++)
-            change[place] = -product(&loop->inverse[place * count], residual, count);
-        for (size_t place = 0; place < count; place++)
-            guess[place] += change[place];
+        move_values(plan, search.found, true);
+        bool same = !memcmp(loop->integers, plan->integers, wholes);
+        progress = broyden_next(&loop->rule, &loop->solver, &search, same);
     }
-    outcome->status = NOT_SETTLED;
-    return false;
+    if (progress == UNSETTLED)
+        outcome->status = NOT_SETTLED;
+    return progress == SETTLED;
 }
 
 static bool take_step(const struct plan *plan, double start, double size, struct outcome *outcome)

@@ -68,6 +68,9 @@ static Status fmu_check_derivative(Instance *instance, const char *function, con
                                    const double *seed, const double *found)
 {
     size_t i;
+    if (LOOP_VALUES > 0 && fmu_allowed(instance, DIFFERENTIATED, function)) {
+        return fmu_complain(instance, FAILED, "an FMU with an algebraic loop gives no derivatives");
+    }
     if (!fmu_ready(instance, DIFFERENTIATED, function, wanted->unknowns, wanted->unknown_count, wanted->unknowns)
         || !fmu_ready(instance, DIFFERENTIATED, function, wanted->knowns, wanted->known_count, wanted->knowns)) {
         return FAILED;

@@ -116,22 +116,81 @@ static void fmu_begin_at(State *state, OriginKind kind, double time, double size
     state->origin.component = state->component;
 }
 
+static Status fmu_complain_of_step(Instance *instance, Status status, double time, double size, const char *why)
+{
+    Text text;
+    fmu_begin(&text);
+    fmu_add(&text, "step from ");
+    fmu_add_time(&text, time);
+    fmu_add(&text, " s by ");
+    fmu_add_time(&text, size);
+    fmu_add(&text, why);
+    return fmu_complain(instance, status, text.text);
+}
+
+/* What parts are to do: start at a time, or step from there. */
+typedef struct {
+    bool start;
+    double time;
+    double size;
+} Pass;
+
+static Status fmu_pass_part(Instance *instance, int part, Pass pass)
+{
+    Component *component = &instance->state.component;
+    int64_t problem = pass.start ? parts[part].initialize(component, pass.time)
+                                 : parts[part].step(component, pass.time, pass.size);
+    return fmu_report_part(instance, &parts[part], problem, pass.start ? FAILED : DISCARD);
+}
+
+static Status fmu_pass_parts(Instance *instance, int first, int end, Pass pass)
+{
+    Status status = OK;
+    int i;
+    for (i = first; i < end && status == OK; i++) {
+        status = fmu_pass_part(instance, i, pass);
+    }
+    return status;
+}
+
+#if LOOP_VALUES > 0
+#include "loop.c"
+#else
+#define LOOP_FIRST PARTS
+#define LOOP_END PARTS
+
+static Status fmu_pass_loop(Instance *instance, Pass pass)
+{
+    (void)instance;
+    (void)pass;
+    return OK;
+}
+#endif
+
+/* Starts or steps all parts. */
+static Status fmu_pass_all(Instance *instance, Pass pass)
+{
+    Status status = fmu_pass_parts(instance, 0, LOOP_FIRST, pass);
+    if (status == OK) {
+        status = fmu_pass_loop(instance, pass);
+    }
+    if (status == OK) {
+        status = fmu_pass_parts(instance, LOOP_END, PARTS, pass);
+    }
+    return status == OK ? fmu_check_finite(instance, pass.start, pass.time, pass.start ? FAILED : DISCARD) : status;
+}
+
 /* Computes the start from the parameters and inputs as they now stand. */
 static Status fmu_refresh(Instance *instance)
 {
     State *state = &instance->state;
-    Status status = OK;
-    int i;
+    Pass pass = {true, state->time, 0.0};
     if (!state->stale) {
         return OK;
     }
     state->stale = false;
     fmu_begin_at(state, START, state->time, 0.0);
-    for (i = 0; i < PARTS && status == OK; i++) {
-        int64_t problem = parts[i].initialize(&state->component, state->time);
-        status = fmu_report_part(instance, &parts[i], problem, FAILED);
-    }
-    return status == OK ? fmu_check_finite(instance, true, state->time, FAILED) : status;
+    return fmu_pass_all(instance, pass);
 }
 
 /* ---- the life cycle, the same in both standards; `function` is the standard's own name */
@@ -182,18 +241,6 @@ static void fmu_free(Instance *instance)
     }
 }
 
-static Status fmu_complain_of_step(Instance *instance, Status status, double time, double size, const char *why)
-{
-    Text text;
-    fmu_begin(&text);
-    fmu_add(&text, "step from ");
-    fmu_add_time(&text, time);
-    fmu_add(&text, " s by ");
-    fmu_add_time(&text, size);
-    fmu_add(&text, why);
-    return fmu_complain(instance, status, text.text);
-}
-
 /* Whether a step is one that could be made at all. */
 static Status fmu_check_step(Instance *instance, double time, double size)
 {
@@ -207,26 +254,10 @@ static Status fmu_check_step(Instance *instance, double time, double size)
     return OK;
 }
 
-/* Whether a step takes a part; all of them without a choice. */
-typedef bool (*Chosen)(int part);
-
-/* One step of the parts that are chosen. */
-static Status fmu_step_chosen(Instance *instance, double time, double size, Chosen chosen)
-{
-    Status status = OK;
-    int i;
-    for (i = 0; i < PARTS && status == OK; i++) {
-        if (chosen == NULL || chosen(i)) {
-            int64_t problem = parts[i].step(&instance->state.component, time, size);
-            status = fmu_report_part(instance, &parts[i], problem, DISCARD);
-        }
-    }
-    return status == OK ? fmu_check_finite(instance, false, time, DISCARD) : status;
-}
-
 static Status fmu_step_parts(Instance *instance, double time, double size)
 {
-    return fmu_step_chosen(instance, time, size, NULL);
+    Pass pass = {false, time, size};
+    return fmu_pass_all(instance, pass);
 }
 
 #define MOST_INNER_STEPS 1e7 /* in one step of the host: half a minute at some microseconds each */

@@ -172,9 +172,18 @@ static void page_feed(size_t place)
     }
 }
 
-static bool page_steps(int part)
+/* One step of the parts that are to take it. */
+static Status page_step_parts(double time, double size)
 {
-    return record.use[part] == STEPPED;
+    Pass pass = {false, time, size};
+    Status status = OK;
+    int i;
+    for (i = 0; i < PARTS && status == OK; i++) {
+        if (record.use[i] == STEPPED) {
+            status = fmu_pass_part(&instance, i, pass);
+        }
+    }
+    return status == OK ? fmu_check_finite(&instance, false, time, DISCARD) : status;
 }
 
 /* Steps from one sample to another. Returns the sample that was reached: an earlier one if a
@@ -188,7 +197,7 @@ EXPORT(run) size_t page_run(size_t from, size_t to)
     }
     for (k = from; k < to; k++) {
         page_feed(k + 1);
-        if (fmu_step_chosen(&instance, (double)k * size, size, page_steps) != OK) {
+        if (page_step_parts((double)k * size, size) != OK) {
             return k;
         }
         page_sample(k + 1);

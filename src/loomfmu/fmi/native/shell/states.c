@@ -1,15 +1,20 @@
 /* The state of an instance as bytes: the same on every machine, and refused if it is not ours.
  *
  * Layout, all numbers little-endian: "LOOMFMU" and the version of the layout, the token, the mode and
- * flags, the times, all variables in the order of their references with what carries the inputs, the same of
- * the origin of the outputs, a checksum.
+ * flags, the times, all variables in the order of their references with what carries the inputs, what a loop
+ * has learnt, the same variables of the origin of the outputs, a checksum.
  */
 
 #define LAYOUT "LOOMFMU\2"
 #define TOKEN_SIZE (sizeof MODEL_TOKEN - 1)
 #define DERIVATIVES_SIZE ((size_t)VARIABLES * (1 + 8 * HIGHEST_ORDER))
 #define ORIGIN_SIZE (2 + 2 * 8 + (size_t)VARIABLES * (8 + 1))
-#define STATE_SIZE (8 + TOKEN_SIZE + 4 + 2 * 8 + (size_t)VARIABLES * 8 + DERIVATIVES_SIZE + ORIGIN_SIZE + 8)
+#if LOOP_VALUES > 0
+#define LOOP_SIZE sizeof(LoopMemory) /* of numbers alone */
+#else
+#define LOOP_SIZE 0
+#endif
+#define STATE_SIZE (8 + TOKEN_SIZE + 4 + 2 * 8 + (size_t)VARIABLES * 8 + DERIVATIVES_SIZE + LOOP_SIZE + ORIGIN_SIZE + 8)
 
 /* Bytes that are written, or read back in the same order. */
 typedef struct {
@@ -92,6 +97,12 @@ static void fmu_pass_state(Stream *stream, State *state)
             state->derivatives[i][order] = fmu_pass_real(stream, state->derivatives[i][order]);
         }
     }
+#if LOOP_VALUES > 0
+    for (i = 0; i < (int)(LOOP_SIZE / sizeof(double)); i++) {
+        double *numbers = (double *)&state->component.loop;
+        numbers[i] = fmu_pass_real(stream, numbers[i]);
+    }
+#endif
     fmu_pass_origin(stream, &state->origin);
 }
 
