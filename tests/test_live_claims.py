@@ -32,7 +32,7 @@ NEARER = "it is nearer to its bound than the page can tell; loomfmu run judges i
 ON_THE_LOOM = [
     {"kind": "above", "signal": "belt.lowest_speed_limit", "bound": "shaft.speed"},
     {"kind": "below", "signal": "weft.velocity", "bound": "20 m/s", "window": ["30 deg", "150 deg"]},
-    {"kind": "below", "signal": "heald_1.inertia_force", "bound": "500 N", "window": ["330 deg", "40 deg"]},
+    {"kind": "below", "signal": "damper_1.spring_force", "bound": "9 kN", "window": ["330 deg", "40 deg"]},
     {"kind": "lowest_margin", "bound": 0.4},
     {"kind": "lowest_margin", "belt": "belt_2", "bound": 0.99},
     {"kind": "dwell", "heald": "heald_1", "at_least": "80 deg"},
@@ -225,15 +225,16 @@ def test_a_claim_that_coarser_steps_cannot_tell_is_not_judged(opened: Open, tmp_
 @pytest.mark.slow
 def test_a_page_says_which_claims_it_does_not_judge(opened: Open, tmp_path: Path) -> None:
     lifts = {"kind": "below", "signal": "heald_1.lift + heald_2.lift", "bound": "99 mm"}
-    scene = with_claims(
-        "[loom]\nmachine = 'WL680-3600'\nweave = '10/01'\n", [lifts, {"kind": "lowest_margin", "bound": 0.1}]
-    )
+    force = {"kind": "below", "signal": "heald_1.inertia_force", "bound": "2 kN"}
+    claims = [lifts, {"kind": "lowest_margin", "bound": 0.1}, force]
+    scene = with_claims("[loom]\nmachine = 'WL680-3600'\nweave = '10/01'\n", claims)
     page = opened(live_page.write(scene, [], tmp_path / "page.html"))
     until(page, lambda: page.evaluate("Boolean(loomfmu.live.pace)"))
-    first, second = page.evaluate("loomfmu.live.verdicts")
+    first, second, third = page.evaluate("loomfmu.live.verdicts")
+    assert third["left"] and third["note"].startswith("the page does not compute the rate of heald_1.inertia")
     assert first["left"] and first["note"] == "a page judges signals, not expressions; loomfmu run judges it"
     assert second["holds"] and not second.get("left")
-    assert "1 not judged here" in page.inner_text(".outcome")
+    assert "2 not judged here" in page.inner_text(".outcome")
 
 
 def alike(one: str, other: str) -> bool:

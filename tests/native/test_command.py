@@ -40,7 +40,7 @@ def test_a_missing_compiler_is_named(tools, tmp_path, capsys, monkeypatch):
     monkeypatch.setattr("loomfmu.fmi.native.compiler.compiler", lambda: None)
     call = ["build", "--native", "--platform", "linux64", "--output", str(tmp_path), "MainShaft"]
     assert cli.main(call) == 2
-    assert capsys.readouterr().err == (
+    assert capsys.readouterr().err.endswith(
         'loomfmu: this needs a compiler, which is not installed: pip install "loomfmu[native]"\n'
     )
     assert list(tmp_path.iterdir()) == []

@@ -31,14 +31,15 @@ class Rates:
         bounded, others = dict[str, None](), set[str]()
         for claim in claims:
             signals = dict.fromkeys(claim.signals(requested))
-            if isinstance(claim, Bounded):
+            if isinstance(claim, Bounded) and not claim.at_samples:
                 bounded |= signals
-            else:
+            elif not isinstance(claim, Bounded):
                 others |= signals.keys()  # these take a jump of the samples for one, not for a curve
         scene = requested.scene
-        if wanted := [each for each in bounded if each not in others and _lacks(scene, each)]:
+        self.signals = [each for each in bounded if each not in others and _lacks(scene, each)]
+        if self.signals:
             with suppress(LoomfmuError):  # without a compiler, or in a loop
-                self._tangents = Tangents(scene, wanted)
+                self._tangents = Tangents(scene, self.signals)
 
     def added(self, scene: Scene, grid: Grid, run: Signals) -> Signals:
         """Return a run of this scene, which differs in values alone, on a grid, with these rates."""

@@ -1,7 +1,7 @@
 """The claims of a page: the rules as WebAssembly, and the question that each claim asks them."""
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -10,6 +10,7 @@ from ..cosim.claims.judging import FIELDS, Form, Table, beside, number_of
 from ..cosim.dependence import Dependence, Method
 from ..cosim.estimates import coarseness, counts
 from ..cosim.planning.requested import SHAFT_ANGLE, Requested
+from ..cosim.rates import Rates
 from ..cosim.scenes.scene import Scene
 from ..cosim.standard import standard
 from ..fmi.native.libraries import module_of
@@ -37,8 +38,9 @@ def claims(
     dependence = Dependence(requested, requested.claims)
     unshown = [dependence.unshown(each) for each in ends]
     asked = zip(requested.claims, dependence.methods, verdicts, strict=True)
+    rated = {*Rates(requested, requested.claims).signals}
     rows = [
-        _claim(claim, method, verdict, trace, table)
+        _claim(claim, method, verdict, trace, table, _not_live(claim, rated & {*claim.signals(requested)}))
         | {"unshown": next((each[number] for each in unshown if number in each), "")}
         | {"counts": counts(trace, verdict), "proven": proven[0].get(number, "")}
         for number, (claim, method, verdict) in enumerate(asked)
@@ -56,7 +58,14 @@ def rules() -> bytes:
     return module_of(source.name, code_of(source))
 
 
-def _claim(claim: Claim, method: Method, verdict: Verdict, trace: Trace, table: Table) -> dict[str, Any]:
+def _not_live(claim: Claim, rated: Collection[str]) -> str:
+    """Return why the page does not judge a claim; `rated` are signals whose rates the run computes."""
+    return claim.not_live or "".join(f"the page does not compute the rate of {each}" for each in rated)
+
+
+def _claim(
+    claim: Claim, method: Method, verdict: Verdict, trace: Trace, table: Table, not_live: str
+) -> dict[str, Any]:
     """Return one claim: its question, the forms of its verdict, the instances that it reads, its verdict.
 
     Of the numerical error the script has the part that differs between resolutions, `spread`, with what the
@@ -64,9 +73,9 @@ def _claim(claim: Claim, method: Method, verdict: Verdict, trace: Trace, table: 
     """
     question, read = claim.question(trace), Table()
     forms = [_form(form, verdict, trace) for form in question.forms]
-    if claim.not_live:
+    if not_live:
         native = {"holds": verdict.holds, "decided": verdict.decided, "worst": verdict.worst}
-        return {"not_live": claim.not_live, "forms": forms, "parts": [], "noise": 0.0, "native": native}
+        return {"not_live": not_live, "forms": forms, "parts": [], "noise": 0.0, "native": native}
     for name in (SHAFT_ANGLE, *question.signals, *(form.signal for form in question.forms)):
         number_of(read, trace, name)
     parameters = [each for each in question.numbers if isinstance(each, str)]

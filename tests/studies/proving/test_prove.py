@@ -1,3 +1,4 @@
+import math
 from pathlib import Path
 
 import numpy as np
@@ -6,7 +7,8 @@ from scene_texts import claim
 
 import loomfmu
 from loomfmu.cli import main
-from loomfmu.cosim.claims.conditions import FALLS, IN, OUT, RISES, UNKNOWN, Spans, Sum
+from loomfmu.cosim.claims.arguments import Window
+from loomfmu.cosim.claims.conditions import FALLS, IN, OUT, RISES, UNKNOWN, Always, Spans, Sum
 from loomfmu.cosim.reading import requested
 from loomfmu.cosim.scenes.scene import Scene, parse
 from loomfmu.errors import LoomfmuError
@@ -101,7 +103,10 @@ def test_a_start_up_and_a_table_of_inputs_are_proven_over_time(loom: Scene, text
     ("signal", "status"),
     [
         ("heald_1.lift + 1e14 m + 1 mm - 1e14 m", "open"),  # 99 mm; no run decides that
+        ("heald_1.lift + max(0 m, 1e14 m + 1 mm - 1e14 m)", "open"),
+        ("(1e14 m + 1 mm - 1e14 m) + heald_1.lift", "open"),
         ("heald_1.lift + 1 mm", "refuted"),
+        ("heald_1.lift + min(1 m, abs(-0.25 mm))", "proven"),
         ("heald_1.lift * 1e-200 * 1e-200 * 1e200 * 1e200", "proven"),
         ("heald_1.lift * 1e-200 * 1e-200", "cannot be proven"),
     ],
@@ -110,6 +115,13 @@ def test_the_numbers_of_an_expression_are_exact(loom: Scene, signal: str, status
     text = loom.text.split("[[claims]]")[0] + claim("below", signal=signal, bound="98.5 mm")
     (found,) = prove(parse(text, "loom")).claims
     assert found.status == status
+
+
+def test_the_end_of_a_run_belongs_to_the_window_that_begins_there() -> None:
+    """Rounding left it out: 260 deg before the start of a revolution is 100 deg after it."""
+    start, edge = math.radians(-260.0), math.radians(100.0)
+    always = Always((Sum(()),), Window(edge, math.radians(101.0)))
+    assert always.ranges(start, start + 2.0 * math.pi)[-1] == pytest.approx((edge, edge))
 
 
 def test_nothing_is_proven_of_an_input_that_follows_a_table(loom: Scene) -> None:

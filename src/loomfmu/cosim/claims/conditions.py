@@ -18,6 +18,7 @@ from ...errors import LoomfmuError
 from .arguments import Window
 from .movers import Wired
 
+STANDS = 4e-9  # of a revolution: a run reaches an angle that is closer to its end; more than judging takes
 Floats = NDArray[np.float64]
 
 
@@ -66,11 +67,11 @@ class Always:
         for start, width in wanted:
             before = len(found)
             for number in range(
-                math.floor((first - start - width) / turn), math.ceil((last - start) / turn) + 1
+                math.floor((first - start - width) / turn) - 1, math.ceil((last - start) / turn) + 2
             ):
                 low, high = max(first, start + turn * number), min(last, start + turn * number + width)
-                if low <= high:
-                    found.append((low, high))
+                if low <= high + STANDS * turn:
+                    found.append((min(low, high), max(low, high)))
             if len(found) == before:
                 raise Unprovable(
                     f"the run never reaches {math.degrees(start):.7g} deg, which the claim names"

@@ -91,7 +91,7 @@ class Expressed(Extended):
         if node.kind == "signal":
             return node.factor * np.asarray(self._run[node.text], dtype=float), node.factor * off[node.text]
         values = self._jet(node)[0]
-        if node.constant is not None:
+        if node.kind == "number":
             return values, 2.0**-52 * np.abs(values)  # which matters beside a smaller sum
         parts = [self._off(part, off) for part in node.parts]
         errors = [error for _values, error in parts]

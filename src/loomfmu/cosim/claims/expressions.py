@@ -120,8 +120,10 @@ class Node:
 
     def linear(self) -> tuple[dict[str, Fraction], Fraction] | None:
         """The share of each signal and a constant, if it is a sum of these; its numbers are not rounded."""
-        if self.kind in ("number", *FUNCTIONS) and self.constant is not None:
-            return {}, Fraction(self.constant)
+        if self.kind == "number":
+            return {}, Fraction(self.number)
+        if self.kind in FUNCTIONS:
+            return self._extreme()
         if self.kind == "signal":
             return {self.text: Fraction(self.factor)}, Fraction(0)
         scale, parts = Fraction(1), list(self.parts)
@@ -145,6 +147,14 @@ class Node:
                 shares[name] = shares.get(name, Fraction(0)) + scale * share
             total += scale * found[1]
         return shares, total
+
+    def _extreme(self) -> tuple[dict[str, Fraction], Fraction] | None:
+        """The number of an `abs`, `min` or `max`, if it is made of numbers alone."""
+        found = [_number(part.linear()) for part in self.parts]
+        known = [each for each in found if each is not None]
+        if len(known) < len(found):
+            return None
+        return {}, abs(known[0]) if self.kind == "abs" else min(known) if self.kind == "min" else max(known)
 
 
 def _number(linear: tuple[dict[str, Fraction], Fraction] | None) -> Fraction | None:
