@@ -54,6 +54,8 @@ def test_a_csv_replaces_no_other_file_and_says_so_before_the_runs() -> None:
     Path("mine.csv").write_text("a,b\n1,2\n")
     with pytest.raises(LoomfmuError, match=r"mine.csv: exists and is not the table of a sweep; --force"):
         swept(GRID, output="mine.csv")
+    with pytest.raises(LoomfmuError, match=r"mine.xlsx is neither a directory nor a file .csv"):
+        swept(GRID, output="mine.xlsx")
     assert not Path("results").exists()
     found = loomfmu.sweep("swept.toml", processes=1, output="mine.csv", overwrite=True)
     assert Path("mine.csv").read_text() == exported.csv(found.table)

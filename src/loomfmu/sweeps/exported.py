@@ -16,6 +16,7 @@ from ..traces.datasets import attributes
 from .axes import Axis
 from .tables import about_column, column_of, is_number
 
+OTHERS = (".xlsx", ".xls", ".ods", ".tsv", ".txt", ".json", ".parquet", ".h5", ".nc")  # tables, but not ours
 COLUMN = re.compile(r"claim_\d+\.(\w+)")
 
 
@@ -45,7 +46,7 @@ def csv(table: Any) -> str:
         unit = ""
         if is_number(table, column):
             _words, unit, values = column_of(table, column)
-            columns.append(["" if value != value else repr(float(value)) for value in values])
+            columns.append(["" if value != value else f"{float(value):.15g}" for value in values])
         else:
             columns.append(["" if value is None else value for value in table[column].to_pylist()])
         heading.append(f"{name} [{unit}]" if unit else name)

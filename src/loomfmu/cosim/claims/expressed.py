@@ -30,7 +30,8 @@ class Expressed(Extended):
     def __init__(self, run: Signals, expression: Expression):
         super().__init__(run, {}, {}, expression.unit)
         self._node, self._display, self.why = expression.node, self._shown_in(expression), ""
-        values, *rates = self._jet(self._node)
+        with np.errstate(over="ignore", invalid="ignore"):  # the verdict says what is not finite
+            values, *rates = self._jet(self._node)
         names = [str(expression), *(f"{each}{expression}" for each in RATES)]
         self._made = dict(zip(names, [values, *rates], strict=False))
         self._rates = dict(pairwise(self._made))
