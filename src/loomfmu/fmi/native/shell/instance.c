@@ -128,6 +128,13 @@ static Status fmu_complain_of_step(Instance *instance, Status status, double tim
     return fmu_complain(instance, status, text.text);
 }
 
+/* Between a step of the host and that of its parts: so the compiler sees which function a part's step is. */
+#if defined(__GNUC__)
+#define ALWAYS_INLINE inline __attribute__((always_inline))
+#else
+#define ALWAYS_INLINE inline
+#endif
+
 /* What parts are to do: start at a time, or step from there. */
 typedef struct {
     bool start;
@@ -135,7 +142,7 @@ typedef struct {
     double size;
 } Pass;
 
-static Status fmu_pass_part(Instance *instance, int part, Pass pass)
+static ALWAYS_INLINE Status fmu_pass_part(Instance *instance, int part, Pass pass)
 {
     Component *component = &instance->state.component;
     int64_t problem = pass.start ? parts[part].initialize(component, pass.time)
@@ -143,7 +150,7 @@ static Status fmu_pass_part(Instance *instance, int part, Pass pass)
     return fmu_report_part(instance, &parts[part], problem, pass.start ? FAILED : DISCARD);
 }
 
-static Status fmu_pass_parts(Instance *instance, int first, int end, Pass pass)
+static ALWAYS_INLINE Status fmu_pass_parts(Instance *instance, int first, int end, Pass pass)
 {
     Status status = OK;
     int i;
@@ -168,7 +175,7 @@ static Status fmu_pass_loop(Instance *instance, Pass pass)
 #endif
 
 /* Starts or steps all parts. */
-static Status fmu_pass_all(Instance *instance, Pass pass)
+static ALWAYS_INLINE Status fmu_pass_all(Instance *instance, Pass pass)
 {
     Status status = fmu_pass_parts(instance, 0, LOOP_FIRST, pass);
     if (status == OK) {
