@@ -41,9 +41,7 @@ def build(options: argparse.Namespace) -> int:
     if options.native:
         output = options.output or Path("build/native" if options.fmi == 2 else "build/native_fmi3")
         count = f"{len(built)} native FMU{'s' * (len(built) != 1)}"
-        complain(
-            f"building {count} for {', '.join(built_for)}: at first, the compiler takes a minute for each"
-        )
+        complain(f"building {count} for {', '.join(built_for)}; the first time takes about a minute for each")
         write = partial(
             build_native, directory=output, platforms=built_for, fmi=options.fmi, overwrite=options.force
         )

@@ -34,8 +34,8 @@ def export(
     The same scene gives the same bytes. `overwrite` replaces a file that is not an FMU of ours.
 
     Raises:
-        LoomfmuError: the scene has third-party FMUs or a lagged loop, a component does not translate, there
-            is no compiler, or the file cannot be written
+        LoomfmuError: the scene has third-party FMUs or a lagged loop, a component does not translate, no
+            compiler is installed, or the file cannot be written
     """
     scene = checked_claims(scene).scene
     inputs = files_of(scene)

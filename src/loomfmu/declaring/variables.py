@@ -232,7 +232,7 @@ class Component:
     longest_turn: ClassVar[float] = 0.0
     # of a shaft: the parameters that are 0 while it turns evenly; none of one that never does
     unsteady: ClassVar[tuple[str, ...]] = ()
-    # on what each output depends, where there is no source that shows it
+    # the inputs that each output depends on, of a component whose source does not show them
     needs: ClassVar[Mapping[str, frozenset[str]]] = {}
     # whether a native FMU has derivatives of its outputs
     derivatives: ClassVar[bool] = True

@@ -44,7 +44,7 @@ class Claim(ABC):
     argument being one that names an instance, and in `reads` the instances of which it needs parameters
     alone; whether what it judges is to be `AT_LEAST` or `AT_MOST` its bound, and the `unit` of both; and what
     it needs of the window `grid`, which is every step unless it says otherwise. `noise` is what its number
-    may be off by with any steps, in its unit. the machine's rules in C hold that by which it is judged.
+    may be off by with any steps, in its unit. The rules by which it is judged are in C.
     `not_live` says why a page in which the scene runs does not judge it, if so.
     """
 

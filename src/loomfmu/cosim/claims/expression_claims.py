@@ -78,7 +78,7 @@ class _OfExpression(Bounded, kind=False):
     def _settled(
         self, trace: Signals, verdict: Verdict, spread: float, share: float, scatter: float
     ) -> Verdict:
-        """Return the verdict on this case alone; a difference of two values is no surer than these."""
+        """Return the verdict on this case alone; a difference has at least the errors of its two values."""
         run = Expressed(trace, self._expression)
         if run.why:
             return verdict

@@ -56,7 +56,7 @@ def is_ours(description: Any) -> bool:
 
 
 def exchange_of(description: Any) -> tuple[int, int, bool]:
-    """The numbers of continuous states and event indicators, and if an FMU is told of the solver's steps."""
+    """The numbers of continuous states and of event indicators; whether the FMU is told of solver steps."""
     told = description.modelExchange.needsCompletedIntegratorStep
     return description.numberOfContinuousStates, description.numberOfEventIndicators, told
 

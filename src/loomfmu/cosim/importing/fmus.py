@@ -75,8 +75,9 @@ class Fmu:
     process may have one instance of. `flavour` is that of one which is built when its file is first needed,
     and empty for one that was given as a file. `fixed_step` is one that takes equal steps only, `needs_tool`
     one that says it needs the tool that made it; `unsupported` are outputs without a port. `tolerance` is the
-    relative one that it states for its own solver, None if it states none. `exchange` is of one for model
-    exchange alone, which is solved here: its states, its event indicators, and if it is told of the steps.
+    relative one that it states for its own solver, None if it states none. Of one for model exchange alone,
+    which is solved here, `exchange` has the numbers of its states and event indicators, and whether it wants
+    each solver step reported.
     """
 
     name: str
