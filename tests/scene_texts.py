@@ -26,6 +26,9 @@ def claim(kind: str, /, **arguments: Any) -> str:
     return table("[claims]", kind=kind, **arguments)
 
 
+SAFE = claim("above", name="safe", signal="belt.lowest_speed_limit", bound="shaft.speed")
+
+
 def wires(**sources: Any) -> str:
     """Lines of [wires]; __ in a name stands for the dot."""
     return "".join(
@@ -41,3 +44,17 @@ def parsed(*parts: str, directory: Path = Path(), **values: Any) -> Scene:
 
 def verdicts(*parts: str, directory: Path = Path(), **values: Any) -> tuple[Verdict, ...]:
     return evaluate(parsed(*parts, directory=directory, **values)).claims
+
+
+def unsolved(first: float, last: float) -> str:
+    """A loop that has no solution while the yarn's tension rises, between these revolutions."""
+    return (
+        'coupling = "iterated"\nsteps_per_revolution = 90\nrecord = ["belt.margin"]\n'
+        '[loom]\nmachine = "WL680-3600"\nweave = "10"\ndampers = true\n'
+        # the carrier has the head's own mass: the belt's force would have to be 5 N more than it is
+        + table("damper_1", damping_ratio=0.0, spring_stiffness=0.0, carrier_mass=0.1105)
+        + "[wires]\n"
+        + wires(belt__acceleration="damper_1.carrier_acceleration", damper_1__warp_force="belt.axial_force")
+        + "[inputs]\n"
+        + wires(belt__yarn_tension=[[0, 0], [first, 0], [last, "5 N"]])
+    )

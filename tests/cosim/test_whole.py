@@ -16,6 +16,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from motor_scenes import MOTOR
 from odd_components import odd
+from scene_texts import unsolved
 from whole_fmus import Instance, Signals, Whole, exported
 
 from loomfmu import LoomfmuError, Result, run
@@ -243,24 +244,7 @@ component = "Switched"
 "other.ratio" = "odd.value"
 "odd.engaged" = "other.running" # what closes the loop is not real
 """
-UNSOLVED = """
-coupling = "iterated"
-steps_per_revolution = 90
-record = ["belt.margin"]
-[loom]
-machine = "WL680-3600"
-weave = "10"
-dampers = true
-[damper_1]
-damping_ratio = 0.0
-spring_stiffness = 0.0
-carrier_mass = 0.1105 # the head's own: the belt's force would have to be 5 N more than it is
-[wires]
-"belt.acceleration" = "damper_1.carrier_acceleration"
-"damper_1.warp_force" = "belt.axial_force"
-[inputs]
-"belt.yarn_tension" = [[0, 0], [0.1, 0], [0.2, "5 N"]]
-"""
+UNSOLVED = unsolved(0.1, 0.2)
 
 
 def test_a_loop_gives_the_bits_of_the_run_in_fmi_3(tmp_path: Path, shaft: Whole) -> None:

@@ -3,27 +3,18 @@
 import math
 
 import pytest
+from scene_texts import claim, loom, table
 
 import loomfmu
 from loomfmu.cosim.scenes.scene import Scene, parse
 
-TEXT = """
-revolutions = 2
-steps_per_revolution = 720
-[loom]
-machine = "WL680-3600"
-head = "G6300 left"
-weave = "10/01"
-[shaft]
-speed = "600 rev/min"
-"""
+TEXT = "revolutions = 2\nsteps_per_revolution = 720\n" + loom(
+    'weave = "10/01"\n', table("shaft", speed="600 rev/min")
+)
 
 
 def scene(*claims: tuple[str, str, str, str], grid: str = "uniform") -> Scene:
-    tables = (
-        f'[[claims]]\nname = "{name}"\nkind = "{kind}"\nsignal = "{signal}"\nbound = "{bound}"\n'
-        for name, kind, signal, bound in claims
-    )
+    tables = (claim(kind, name=name, signal=signal, bound=bound) for name, kind, signal, bound in claims)
     return parse(f'grid = "{grid}"\n{TEXT}{"".join(tables)}', "loom")
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from odd_components import odd
+from scene_texts import unsolved
 from scipy.integrate import solve_ivp
 from stepped import same_bits, stepped
 
@@ -234,25 +235,8 @@ def test_rolled_back_extremes_and_counters_are_those_of_the_last_try() -> None:
 
 
 def test_a_loop_without_solution_is_told_with_place_and_time(tmp_path: Path) -> None:
-    rest = """
-coupling = "iterated"
-steps_per_revolution = 90
-[loom]
-machine = "WL680-3600"
-weave = "10"
-dampers = true
-[damper_1]
-damping_ratio = 0.0
-spring_stiffness = 0.0
-carrier_mass = 0.1105 # the head's own: the belt's force would have to be 5 N more than it is
-[wires]
-"belt.acceleration" = "damper_1.carrier_acceleration"
-"damper_1.warp_force" = "belt.axial_force"
-[inputs]
-"belt.yarn_tension" = [[0, 0], [0.01, 0], [0.02, "5 N"]]
-"""
     with pytest.raises(LoomfmuError) as raised:
-        loomfmu.run(scenes.parse(rest, "unsolved"), output=tmp_path / "unsolved.h5")
+        loomfmu.run(scenes.parse(unsolved(0.01, 0.02), "unsolved"), output=tmp_path / "unsolved.h5")
     said = str(raised.value)
     assert "damper_1.carrier_acceleration -> belt.acceleration" in said
     assert "in 50 exchanges" in said

@@ -4,27 +4,16 @@ import math
 from pathlib import Path
 
 import pytest
+from scene_texts import SAFE, loom, table
 
 from loomfmu import LoomfmuError, limit
 from loomfmu.cli import main
 from loomfmu.cosim.scenes.scene import Scene, parse
 from loomfmu.design import loom as design
 
-TEXT = """
-revolutions = 1
-steps_per_revolution = 1440
-[loom]
-machine = "WL680-3600"
-head = "G6300 left"
-[shaft]
-speed = "600 rev/min"
-[[claims]]
-name = "safe"
-kind = "above"
-signal = "belt.lowest_speed_limit"
-bound = "shaft.speed"
-[tolerances]
-"""
+TEXT = "revolutions = 1\nsteps_per_revolution = 1440\n" + loom(
+    table("shaft", speed="600 rev/min"), SAFE, "[tolerances]\n"
+)
 CORNERS = '"belt.guide_clearance" = ["0.2 mm", "0.5 mm"]\n"belt.head_mass" = ["105 g", "116 g"]\n'
 SPEEDS = "shaft.speed=400rpm..800rpm"
 

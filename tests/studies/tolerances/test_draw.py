@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scene_texts import SAFE, claim, loom, table
 from scipy import stats
 
 from loomfmu import LoomfmuError, draw_looms, tolerances
@@ -18,23 +19,9 @@ from loomfmu.studies.tolerances.distributions import distribution_of
 from loomfmu.studies.tolerances.draw import _values
 from loomfmu.studies.tolerances.shares import Share, rows
 
-TEXT = """
-revolutions = 1
-steps_per_revolution = 90
-[loom]
-machine = "WL680-3600"
-head = "G6300 left"
-[shaft]
-speed = "600 rev/min"
-[[claims]]
-name = "safe"
-kind = "above"
-signal = "belt.lowest_speed_limit"
-bound = "shaft.speed"
-[[claims]]
-kind = "lowest_margin"
-bound = 0.1
-"""
+TEXT = "revolutions = 1\nsteps_per_revolution = 90\n" + loom(
+    table("shaft", speed="600 rev/min"), SAFE, claim("lowest_margin", bound=0.1)
+)
 CLEARANCE = '"belt.guide_clearance" = {}'
 
 
