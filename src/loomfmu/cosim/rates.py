@@ -4,7 +4,7 @@ An output then has a curve between its samples, as one whose rate is recorded. T
 a memory, whose outputs follow the shaft: what happens within a step of others may not show at its ends.
 """
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable, Mapping
 from contextlib import suppress
 
 import numpy as np
@@ -36,7 +36,8 @@ class Rates:
             elif not isinstance(claim, Bounded):
                 others |= signals.keys()  # these take a jump of the samples for one, not for a curve
         scene = requested.scene
-        self.signals = [each for each in bounded if each not in others and _lacks(scene, each)]
+        sources = sources_of((wire.source[0], wire.sink[0]) for wire in scene.wires)
+        self.signals = [each for each in bounded if each not in others and _lacks(scene, sources, each)]
         if self.signals:
             with suppress(LoomfmuError):  # without a compiler, or in a loop
                 self._tangents = Tangents(scene, self.signals)
@@ -55,13 +56,12 @@ class Rates:
         return Extended(run, {names[name]: rates for name, rates in made.items()}, names)
 
 
-def _lacks(scene: Scene, signal: str) -> bool:
-    """Return whether an output has no rate, and its equations give one."""
+def _lacks(scene: Scene, sources: Mapping[str, Collection[str]], signal: str) -> bool:
+    """Return whether an output has no rate, and its equations give one; `sources` feed each instance."""
     owner, _, variable = signal.partition(".")
     port = scene.instances[owner].fmu.ports[variable]
     if port.causality != "output" or port.kind != "Real" or port.rate:
         return False
-    sources = sources_of((wire.source[0], wire.sink[0]) for wire in scene.wires)
     needed = upstream([owner], sources)
     components = (scene.instances[name].fmu.component for name in needed)
     follows = all(each is not None and COMPONENTS.owns(each) and each.keeps == NOTHING for each in components)

@@ -1,15 +1,13 @@
 """The corners of a scene's tolerances, as cases."""
 
-import math
 from collections.abc import Collection, Sequence
 from itertools import product
 
 from ..cosim.scenes.scene import Scene
-from ..cosim.scenes.tolerances import ends_of
 from ..errors import LoomfmuError
 from ..sweeps.varied import Varied, varied
 from .cases import MOST, Case
-from .tolerances.distributions import distribution_of
+from .tolerances.distributions import ends_within
 
 
 def corners_of(scene: Scene, apart: Collection[str] = ()) -> list[Case]:
@@ -36,10 +34,7 @@ def corners_of(scene: Scene, apart: Collection[str] = ()) -> list[Case]:
 
 def _ends(scene: Scene, key: str) -> Sequence[tuple[Varied, float]]:
     """A variable with a tolerance, at both ends of this."""
-    variable, stated = varied(scene, key), ends_of(scene.tolerances[key])
-    if stated is None:
-        ends = distribution_of(scene, key, scene.tolerances[key]).ends
-        if math.isinf(ends[1] - ends[0]):
-            raise LoomfmuError(f'tolerances: {key} is normal without ends; add within = ["LOW", "HIGH"]')
-        return [(variable, end) for end in ends]
-    return [(variable, float(variable.read(end))) for end in stated]
+    variable, ends = varied(scene, key), ends_within(scene, key)
+    if ends is None:
+        raise LoomfmuError(f'tolerances: {key} is normal without ends; add within = ["LOW", "HIGH"]')
+    return [(variable, float(variable.read(end))) for end in ends]

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
 from operator import add, sub
+from typing import Any
 
 from ... import units
 from ...errors import LoomfmuError, shown, suggestion
@@ -17,6 +18,7 @@ Dimension = tuple[int, ...]
 UnitOf = Callable[[str], str]  # the unit of a signal
 
 FUNCTIONS = {"abs": (1, 1), "min": (2, 9), "max": (2, 9)}  # and how many arguments they take
+FOLDED: Mapping[str, Callable[[list[Any]], Any]] = {"abs": lambda each: abs(each[0]), "min": min, "max": max}
 OPERATORS: dict[type[ast.AST], str] = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/"}
 LONGEST, DEEPEST = 500, 50  # characters, and levels of operations in one another
 MOST_CASES = 32
@@ -68,15 +70,13 @@ class Node:
             return None
         if self.kind == "/":
             return known[0] / known[1] if known[1] else None
-        functions: Mapping[str, Callable[[list[float]], float]] = {
+        folded: Mapping[str, Callable[[list[float]], float]] = {
             "+": sum,
             "*": math.prod,
             "neg": lambda each: -each[0],
-            "abs": lambda each: abs(each[0]),
-            "min": min,
-            "max": max,
+            **FOLDED,
         }
-        return functions[self.kind](known)
+        return folded[self.kind](known)
 
     def of(self, *parts: "Node") -> "Node":
         """The same operation on other parts."""
@@ -89,7 +89,7 @@ class Node:
         return Node("neg", (self,), f"-{self.text}", dimension=self.dimension)
 
     def cases(self, sense: int) -> list["Node"]:
-        """Smooth expressions that keep a bound together where this keeps it; none if there are no such.
+        """Smooth expressions that all keep a bound exactly where this one does; an empty list without such.
 
         With sense 1 the least of them is this expression, with -1 the largest.
         """
@@ -154,7 +154,7 @@ class Node:
         known = [each for each in found if each is not None]
         if len(known) < len(found):
             return None
-        return {}, abs(known[0]) if self.kind == "abs" else min(known) if self.kind == "min" else max(known)
+        return {}, FOLDED[self.kind](known)
 
 
 def _number(linear: tuple[dict[str, Fraction], Fraction] | None) -> Fraction | None:

@@ -26,9 +26,7 @@ def tolerances_of(table: Any) -> dict[str, Any]:
                 f'tolerances: write the whole key in quotes, such as "{name}" = ["LOW", "HIGH"]'
             )
         if not (isinstance(ends, dict) or _is_pair(ends)):
-            raise LoomfmuError(
-                f'tolerances: {key} = {shown(ends)} must be two ends such as ["0.2 mm", "0.5 mm"]'
-            )
+            raise LoomfmuError(f"tolerances: {key} = {shown(ends)} must be {ENDS}")
         if isinstance(ends, dict):
             _check_distribution(f"tolerances: {key}", ends)
     return {key: ends if isinstance(ends, dict) else (ends[0], ends[1]) for key, ends in table.items()}

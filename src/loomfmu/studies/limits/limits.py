@@ -66,10 +66,12 @@ def limits_of(
     ]
     resolution = (span.high - span.low) / (points - 1)
     ranges, warnings = _common(found, span), warnings_of([span], of_run)
-    title = heading(loom.scene, [span.key])
-    if len(cases) > 1:
-        title += f", in the worst of {len(cases)} cases"
+    title = _title(loom, [span.key], cases)
     return Limits(title, span, resolution, tuple(found), ranges, len(runs) + len(cases), warnings)
+
+
+def _title(loom: Prepared, keys: Sequence[str], cases: Sequence[Case]) -> str:
+    return heading(loom.scene, keys) + f", in the worst of {len(cases)} cases" * (len(cases) > 1)
 
 
 class _Runs(Evaluations):
@@ -348,6 +350,5 @@ def _boundary(
             found.append(limits_of(loom, first, points, second.setting(value), advance, cases))
         except LoomfmuError as error:
             raise LoomfmuError(f"at {second.key} = {second.show(value)}: {error}") from None
-    title = heading(loom.scene, [first.key, second.key])
-    title += f", in the worst of {len(cases)} cases" * (len(cases) > 1)
+    title = _title(loom, [first.key, second.key], cases)
     return Boundary(title, first, second, tuple(values), tuple(found))

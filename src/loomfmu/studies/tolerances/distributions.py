@@ -13,6 +13,7 @@ import numpy as np
 from ... import units
 from ...cosim.scenes.notes import check_effect
 from ...cosim.scenes.scene import Scene
+from ...cosim.scenes.tolerances import ends_of
 from ...errors import LoomfmuError, listed
 from ...sweeps.varied import Keyed, Varied, varied
 from ..fitting.measured import Floats, factor_to, named_column, rows_of, values_of
@@ -52,11 +53,19 @@ def distribution_of(scene: Scene, key: str, given: Any) -> Distribution:
     doubts = tuple(filter(None, map(variable.doubt, numbers)))
     if "uniform" in table:
         low, high = _ends(variable, table["uniform"], where)
-        text = f"uniform, {variable.show(low)} to {variable.show(high)}"
+        text = f"uniform, {_range(variable, low, high)}"
         return Distribution(
             variable, text, lambda share: low + share * (high - low), (low, high), None, doubts
         )
     return _normal(variable, table, where, doubts)
+
+
+def ends_within(scene: Scene, key: str) -> tuple[Any, Any] | None:
+    """Return the ends of a tolerance of a scene, as they are stated or else in SI; None if it has none."""
+    if (stated := ends_of(scene.tolerances[key])) is not None:
+        return stated
+    low, high = distribution_of(scene, key, scene.tolerances[key]).ends
+    return None if math.isinf(high - low) else (units.Si(low), units.Si(high))
 
 
 def _ends(variable: Varied, given: Sequence[Any], where: str) -> tuple[float, float]:

@@ -86,10 +86,8 @@ def _drawn(
             found = loom.evaluate(settings, errors="near")
             found.check_end()
         except LoomfmuError as error:
-            shown = ", ".join(
-                f"{each.key} = {each.varied.show(values[each.key][row])}" for each in distributions
-            )
-            raise LoomfmuError(f"loom {row + 1} of {looms}, with {shown}: {error}") from None
+            drawn = (f"{each.key} = {each.varied.show(values[each.key][row])}" for each in distributions)
+            raise LoomfmuError(f"loom {row + 1} of {looms}, with {', '.join(drawn)}: {error}") from None
         verdicts = found.claims
         warnings = warnings or found.warnings
         words.append([each.word for each in verdicts])

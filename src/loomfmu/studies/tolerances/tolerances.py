@@ -14,14 +14,12 @@ from ...cosim.reading import protected
 from ...cosim.run import prepare
 from ...cosim.scenes.headings import heading
 from ...cosim.scenes.scene import Scene
-from ...cosim.scenes.tolerances import ends_of
 from ...display.progress import progress as progress_bar
 from ...errors import LoomfmuError
 from ...sweeps.varied import Keyed
-from ...units import Si
 from ..evaluations import Evaluations
 from ..span import Span, set_twice, span_of, warnings_of
-from .distributions import distribution_of
+from .distributions import ends_within
 from .proven import proven
 from .results import SAME, Cost, Tolerances, WorstCase
 
@@ -84,15 +82,13 @@ def check_asked(scene: Scene, keys: Sequence[str]) -> None:
 
 def _ends(scene: Scene, key: str) -> tuple[Any, Any]:
     """The ends of a tolerance of the scene, for the worst case. Raises LoomfmuError where it has none."""
-    if (stated := ends_of(scene.tolerances[key])) is not None:
-        return stated
-    low, high = distribution_of(scene, key, scene.tolerances[key]).ends
-    if math.isinf(high - low):
+    ends = ends_within(scene, key)
+    if ends is None:
         raise LoomfmuError(
             f"{scene.name}: [tolerances]: {key} is normal without ends, so it has no worst case; add"
             ' within = ["LOW", "HIGH"], or draw looms'
         )
-    return Si(low), Si(high)
+    return ends
 
 
 def tolerance_of(scene: Scene, key: str, low: Any, high: Any) -> Span:
