@@ -138,7 +138,7 @@ def sweep(
     inputs, wanted = [Path(path), *files_of(plan.scene)], path_of(output, "output") if output else None
     written = wanted if wanted and wanted.suffix == ".csv" else None
     if wanted and wanted.suffix in exported.OTHERS:
-        raise LoomfmuError(f"output {wanted} is neither a directory nor a file .csv, which a table can be")
+        raise LoomfmuError(f"output {wanted} is neither a directory nor a file .csv; name one of these")
     if written:
         check_target(written, exported.TABLE, inputs, overwrite)  # before the runs
     directory = wanted if wanted and not written else Path("results") / plan.name
