@@ -286,8 +286,27 @@ def test_it_is_known_where_its_signals_are_and_off_by_what_they_are() -> None:
 
 
 def test_nobody_trusts_the_difference_of_two_large_numbers_beyond_their_own_errors() -> None:
-    assert Expressed(run(), read("a.x - a.x")).noise(1e-8, 0.0) == pytest.approx(2e-8)
+    assert Expressed(run(), read("(a.x * b.x) / 1 m - (b.x * a.x) / 1 m")).noise(1e-8, 0.0) > 8e-8
+    assert (
+        Expressed(run(), read("a.x - a.x")).noise(1e-8, 0.0) < 1e-300
+    )  # a sum of shares: none of it is left
     assert Expressed(run(), read("a.x - b.x")).noise(0.0, 5e-3) > 5e-3  # each has moved by a metre at least
+
+
+@pytest.mark.parametrize("numbers", ["* 1e-200 * 1e-200 * 1e200 * 1e200", "+ 1e14 m + 1 mm - 1e14 m - 1 mm"])
+def test_numbers_do_not_round_before_they_meet_a_signal(numbers: str) -> None:
+    expressed = Expressed(run(), read(f"a.x {numbers}"))
+    assert np.allclose(expressed[f"a.x {numbers}"], run()["a.x"], rtol=4e-16, atol=0.0)
+    assert expressed.noise(0.0, 0.0) < 1e-15
+
+
+def test_a_product_of_signals_that_underflows_is_not_trusted() -> None:
+    text = "a.x * c.share * 1e-200 * 1e-200 * 1e200 * 1e200"
+    assert Expressed(run(), read(text)).noise(0.0, 0.0) > 1e50
+
+
+def test_a_long_product_is_read_at_once() -> None:
+    assert read("a.x" + 45 * " * 2").node.linear == ({"a.x": 2**45}, 0)  # with 2^45 looks at its start
 
 
 # ---- in scenes

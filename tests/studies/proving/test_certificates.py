@@ -89,6 +89,10 @@ FORGED = [  # what is done to a certificate, and what is said of it
         'told["over"]["heald.stroke"] = [(0.098).hex(), (0.0981).hex()]',
         "varies twice",
     ),
+    (
+        """told["scene"] += '[wires]\\n"belt.velocity" = false\\n'""",
+        "belt.velocity is constant, but belt.travel is wired",
+    ),
     (f'told["scene"] += {claim("lowest_margin", name="margin", bound=0.99)!r}', "under one name"),
     ('told["texts"]["mine.py"] = "print(1)"', "only the package's own mechanisms"),
     ('told["scene"] += "[other]\\nfmu = \'/etc/other.fmu\'\\n"', "only the package's own mechanisms"),
@@ -198,6 +202,13 @@ def test_a_slope_that_is_0_at_an_end_of_a_box_is_confirmed(tmp_path: Path) -> No
     found = prove(RAPIERS, over=over, set=wider, claims=["the hooks pass each other slowly"])
     certificate.write(found, tmp_path / "proof.json")
     assert len(check(tmp_path / "proof.json")) == 1
+
+
+def test_a_bound_that_is_reached_at_the_very_end_is_confirmed(loom: Any, tmp_path: Path) -> None:
+    text = loom.text.split("[[claims]]")[0] + claim("below", signal="shaft.angle", bound=4.0 * math.pi)
+    found = prove(parse(text, "loom"), over=["shaft.speed=500rpm..600rpm"])
+    assert certificate.write(found, tmp_path / "proof.json")
+    assert check(tmp_path / "proof.json")
 
 
 def test_a_loom_that_turns_backwards_is_confirmed(loom: Any, tmp_path: Path) -> None:

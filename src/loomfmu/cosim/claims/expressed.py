@@ -4,7 +4,9 @@ Where the rates of all signals are known, so are those of their sums, products a
 samples an expression thus follows a curve of its own, as a recorded signal does.
 """
 
+import math
 from collections.abc import Mapping
+from fractions import Fraction
 from functools import reduce
 from itertools import pairwise
 
@@ -19,6 +21,7 @@ from .expressions import Expression, Node, known_as
 
 Jet = list[Floats]  # values, then rates and second rates as far as they are known
 RATES = "rate of ", "second rate of "
+ROUNDING, TINY = 2.0**-52, 5e-324  # of a number beside a smaller sum, and of one that is hardly more than 0
 
 
 class Expressed(Extended):
@@ -41,15 +44,17 @@ class Expressed(Extended):
 
     def _jet(self, node: Node) -> Jet:
         """Return the samples of a part of the expression, in SI."""
-        if (number := node.constant) is not None:
-            return [np.full(len(self.time), number), *2 * [np.zeros(len(self.time))]]
-        if node.kind == "signal":
-            return [node.factor * each for each in self._recorded_jet(node.text)]
+        if node.linear is not None:
+            shares, constant = node.linear
+            parts = [[_float(share) * e for e in self._recorded_jet(name)] for name, share in shares.items()]
+            if constant or not shares:
+                parts.append([np.full(len(self.time), _float(constant)), *2 * [np.zeros(len(self.time))]])
+            return _sum(parts)
         parts = [self._jet(part) for part in node.parts]
         if node.kind == "neg":
             return [-each for each in parts[0]]
         if node.kind == "+":
-            return [sum(each[1:], each[0]) for each in zip(*parts, strict=False)]
+            return _sum(parts)
         if node.kind == "*":
             return reduce(_product, parts)
         if node.kind == "/":
@@ -89,19 +94,22 @@ class Expressed(Extended):
 
     def _off(self, node: Node, off: Mapping[str, Floats]) -> tuple[Floats, Floats]:
         """Return the samples of a part, and how far they are off if signals are off by so much, in SI."""
-        if node.kind == "signal":
-            return node.factor * np.asarray(self._run[node.text], dtype=float), node.factor * off[node.text]
         values = self._jet(node)[0]
-        if node.kind == "number":
-            return values, 2.0**-52 * np.abs(values)  # which matters beside a smaller sum
+        if node.linear is not None:
+            shares, constant = node.linear
+            error = np.full(len(self.time), ROUNDING * abs(_float(constant)) + TINY)
+            for name, share in shares.items():
+                here = np.abs(np.asarray(self._run[name], dtype=float))
+                error += abs(_float(share)) * (off[name] + ROUNDING * here) + TINY * here
+            return values, error
         parts = [self._off(part, off) for part in node.parts]
         errors = [error for _values, error in parts]
         if node.kind == "*":
             (one, here), (other, there) = parts
-            return values, np.abs(one) * there + np.abs(other) * here + here * there
+            return values, np.abs(one) * there + np.abs(other) * here + here * there + TINY
         if node.kind == "/":
             left = np.abs(parts[1][0]) - errors[1]
-            known = (errors[0] + np.abs(values) * errors[1]) / np.where(left > 0.0, left, 1.0)
+            known = (errors[0] + np.abs(values) * errors[1]) / np.where(left > 0.0, left, 1.0) + TINY
             return values, np.where(left > 0.0, known, np.inf)
         if node.kind == "+":
             return values, errors[0] + errors[1]
@@ -143,6 +151,17 @@ class Expressed(Extended):
         if signal == next(iter(self._made)):
             return self._beside.get(role)
         return super().beside(signal, role)
+
+
+def _sum(parts: list[Jet]) -> Jet:
+    return [sum(each[1:], each[0]) for each in zip(*parts, strict=False)]
+
+
+def _float(exact: Fraction) -> float:
+    try:
+        return float(exact)
+    except OverflowError:  # the verdict says what is not finite
+        return math.copysign(math.inf, exact)
 
 
 def _product(one: Jet, other: Jet) -> Jet:

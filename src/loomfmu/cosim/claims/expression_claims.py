@@ -95,7 +95,7 @@ class _OfExpression(Bounded, kind=False):
 
     def _condition(self, run: Wired) -> Condition:
         """Return what must be so at every shaft angle, for a sum. Raises Unprovable for anything else."""
-        linear = self._expression.node.linear()
+        linear = self._expression.node.linear
         if linear is None:
             raise Unprovable("it is on an expression that is not a sum of shares of signals")
         shares, constant = linear

@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from itertools import product
 from operator import add, sub
 from typing import Any
@@ -16,6 +17,7 @@ from ...units import BASES, UNITS
 
 Dimension = tuple[int, ...]
 UnitOf = Callable[[str], str]  # the unit of a signal
+Linear = tuple[dict[str, Fraction], Fraction]  # the share of each signal, and a constant
 
 FUNCTIONS = {"abs": (1, 1), "min": (2, 9), "max": (2, 9)}  # and how many arguments they take
 FOLDED: Mapping[str, Callable[[list[Any]], Any]] = {"abs": lambda each: abs(each[0]), "min": min, "max": max}
@@ -60,23 +62,9 @@ class Node:
         return known or (self.kind not in FUNCTIONS and all(part.smooth for part in self.parts))
 
     @property
-    def constant(self) -> float | None:
+    def constant(self) -> Fraction | None:
         """Its number, if it is made of numbers alone."""
-        if self.kind == "number":
-            return self.number
-        found = [part.constant for part in self.parts]
-        known = [each for each in found if each is not None]
-        if not known or len(known) < len(found):
-            return None
-        if self.kind == "/":
-            return known[0] / known[1] if known[1] else None
-        folded: Mapping[str, Callable[[list[float]], float]] = {
-            "+": sum,
-            "*": math.prod,
-            "neg": lambda each: -each[0],
-            **FOLDED,
-        }
-        return folded[self.kind](known)
+        return _number(self.linear)
 
     def of(self, *parts: "Node") -> "Node":
         """The same operation on other parts."""
@@ -115,49 +103,46 @@ class Node:
         place = next((place for place, each in enumerate(known) if each), None)
         if place is None:
             return []
-        others = self.parts[1 - place].cases(sense if (known[place] or 0.0) > 0.0 else -sense)
+        others = self.parts[1 - place].cases(sense if (known[place] or 0) > 0 else -sense)
         return [self.of(*((each, self.parts[1]) if place else (self.parts[0], each))) for each in others]
 
-    def linear(self) -> tuple[dict[str, Fraction], Fraction] | None:
+    @cached_property
+    def linear(self) -> Linear | None:
         """The share of each signal and a constant, if it is a sum of these; its numbers are not rounded."""
-        if self.kind == "number":
-            return {}, Fraction(self.number)
-        if self.kind in FUNCTIONS:
-            return self._extreme()
-        if self.kind == "signal":
-            return {self.text: Fraction(self.factor)}, Fraction(0)
-        scale, parts = Fraction(1), list(self.parts)
-        if self.kind in ("*", "/"):
-            known = [_number(part.linear()) for part in parts]
-            place = 1 if known[1] is not None else 0
-            value = known[place]
-            if value is None or (self.kind == "/" and (place == 0 or not value)):
-                return None
-            scale, parts = 1 / value if self.kind == "/" else value, [parts[1 - place]]
-        elif self.kind == "neg":
-            scale = Fraction(-1)
-        elif self.kind != "+":
+        known = [part.constant for part in self.parts]
+        match self.kind:
+            case "number":
+                return {}, Fraction(self.number)
+            case "signal":
+                return {self.text: Fraction(self.factor)}, Fraction(0)
+            case "neg":
+                return _sum([self.parts[0].linear], Fraction(-1))
+            case "+":
+                return _sum([part.linear for part in self.parts])
+            case "*" if known[1] is not None:
+                return _sum([self.parts[0].linear], known[1])
+            case "*" if known[0] is not None:
+                return _sum([self.parts[1].linear], known[0])
+            case "/" if known[1]:
+                return _sum([self.parts[0].linear], 1 / known[1])
+        numbers = [each for each in known if each is not None]
+        whole = self.kind in FUNCTIONS and len(numbers) == len(known)
+        return ({}, FOLDED[self.kind](numbers)) if whole else None
+
+
+def _sum(parts: list[Linear | None], scale: Fraction = Fraction(1)) -> Linear | None:
+    """Return a multiple of a sum, if its parts are all known."""
+    shares, total = dict[str, Fraction](), Fraction(0)
+    for part in parts:
+        if part is None:
             return None
-        shares, total = dict[str, Fraction](), Fraction(0)
-        for part in parts:
-            found = part.linear()
-            if found is None:
-                return None
-            for name, share in found[0].items():
-                shares[name] = shares.get(name, Fraction(0)) + scale * share
-            total += scale * found[1]
-        return shares, total
-
-    def _extreme(self) -> tuple[dict[str, Fraction], Fraction] | None:
-        """The number of an `abs`, `min` or `max`, if it is made of numbers alone."""
-        found = [_number(part.linear()) for part in self.parts]
-        known = [each for each in found if each is not None]
-        if len(known) < len(found):
-            return None
-        return {}, FOLDED[self.kind](known)
+        for name, share in part[0].items():
+            shares[name] = shares.get(name, Fraction(0)) + scale * share
+        total += scale * part[1]
+    return shares, total
 
 
-def _number(linear: tuple[dict[str, Fraction], Fraction] | None) -> Fraction | None:
+def _number(linear: Linear | None) -> Fraction | None:
     """Return the number that a sum is if it has no signals."""
     return None if linear is None or linear[0] else linear[1]
 
@@ -289,7 +274,7 @@ class _Reader:
         if sign in "+-":
             dimension = self._same([left, right], text)
             return Node("+", (left, right if sign == "+" else right.negative), text, dimension=dimension)
-        if sign == "/" and right.constant == 0.0:
+        if sign == "/" and right.constant == 0:
             raise self._refused("divides by 0")
         combined = zip(left.dimension, right.dimension, strict=True)
         dimension = tuple((add if sign == "*" else sub)(*each) for each in combined)

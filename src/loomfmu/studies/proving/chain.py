@@ -13,14 +13,13 @@ import numpy as np
 from ...components import COMPONENTS
 from ...components.shaft_driven import FOLLOWING, ShaftDriven
 from ...cosim.claims.conditions import Unprovable, remembers
-from ...cosim.planning.pruning import prune
 from ...cosim.scenes.graph import step_order
 from ...cosim.scenes.instances import Instance
 from ...cosim.scenes.scene import Scene
 from ...declaring.variables import MOTION, TIME, Component, variables_of
 from ...fmi.native.slicing import settings_of
 from .enclosed import Enclosed
-from .sides import SHAFT, START, outputs_of
+from .sides import SHAFT, START, needed_for
 from .spans import TINY, ULP, Floats, both, constant, minus, plus, times
 
 
@@ -127,24 +126,22 @@ class Chain:
     """
 
     def __init__(self, scene: Scene, signals: Sequence[str], sides: Mapping[tuple[str, str], int]):
-        needed = prune(scene, outputs_of(scene, signals), keep_shafts=True)
+        needed = needed_for(scene, signals)
         if SHAFT not in scene.instances:
             raise Unprovable("the scene has no shaft")
         shaft = scene.instances[SHAFT]
         unsteady = shaft.fmu.component.unsteady if shaft.fmu.component else ()
-        self._drives = {(each.instance, each.variable): each for each in needed.scene.drives}
+        self._drives = {(each.instance, each.variable): each for each in needed.drives}
         varies = any(owner == SHAFT and name in unsteady for owner, name in sides)
         self.timed = bool(self._drives) or varies or any(map(shaft.start, unsteady))
         self._scene, self._sides = scene, {**sides, (SHAFT, TIME if self.timed else START): 0}
-        order, lagged = step_order(needed.scene.instances, needed.scene.wires)
+        order, lagged = step_order(needed.instances, needed.wires)
         if lagged:
             raise Unprovable(f"{lagged[0]} closes a loop")
         self._tables = {place: Table(each.periods, each.values) for place, each in self._drives.items()}
-        read = {wire.source for wire in needed.scene.wires} | {tuple(each.split(".", 1)) for each in signals}
+        read = {wire.source for wire in needed.wires} | {tuple(each.split(".", 1)) for each in signals}
         self._placed = [
-            self._place(
-                needed.scene.instances[name], needed.scene, {each[1] for each in read if each[0] == name}
-            )
+            self._place(needed.instances[name], needed, {each[1] for each in read if each[0] == name})
             for name in order
         ]
 

@@ -32,7 +32,6 @@ from ...cosim.claims.conditions import (
     names_of,
     remembers,
 )
-from ...cosim.planning.pruning import prune
 from ...cosim.reading import requested
 from ...cosim.scenes import scene as scenes
 from ...cosim.scenes.graph import step_order
@@ -50,7 +49,7 @@ from ...fmi.native.translate import ENTRIES
 from ...sweeps.varied import Varied, varied
 from . import FORMAT, MOST_REVOLUTIONS
 from .intervals import ALL, MATH, Ends, Interval, Unknown, floor, joined, number
-from .sides import SHAFT, START, check_side, outputs_of
+from .sides import SHAFT, START, check_side, needed_for
 
 FINE = 0.02  # [rad]: so narrow must a box be that a mechanism is in one of its phases
 FINER = 8  # bisections of a box that this arithmetic, which is wider, may need on top
@@ -308,7 +307,7 @@ class _Mechanisms:
 
     def __init__(self, scene: Scene, names: Sequence[str], sides: dict[Any, int], equations: dict[str, str]):
         self._scene, self._sides = scene, sides
-        needed = prune(scene, outputs_of(scene, names), keep_shafts=True).scene
+        needed = needed_for(scene, names)
         order, lagged = step_order(needed.instances, needed.wires)
         if lagged or needed.drives:
             raise Refused("the scene has a loop or a table of inputs")

@@ -13,6 +13,7 @@ from flint import arb, ctx
 MOST_WAYS, MOST_DECISIONS = 64, 12
 Ends = tuple[float, float]
 ALL: Ends = (-math.inf, math.inf)
+NONE: Ends = (0.0, 0.0)
 
 
 ctx.prec = 80  # bits: a function of an end is then off by less than the rounding of its result
@@ -27,7 +28,9 @@ def _outwards(low: float, high: float) -> Ends:
 
 
 def _sum(a: Ends, b: Ends) -> Ends:
-    """Add bounds: a sum that is 0 is exact."""
+    """Add bounds: a sum that is 0, or has one that is, is exact."""
+    if a == NONE or b == NONE:
+        return b if a == NONE else a
     low, high = a[0] + b[0], a[1] + b[1]
     found = _outwards(low, high)
     return (low if low == 0.0 else found[0]), (high if high == 0.0 else found[1])
@@ -41,6 +44,11 @@ def _times(x: float, y: float) -> float:
 
 
 def _product(a: Ends, b: Ends) -> Ends:
+    for one, other in ((a, b), (b, a)):  # exact
+        if one == (1.0, 1.0):
+            return other
+        if one == (-1.0, -1.0):
+            return -other[1], -other[0]
     every = [_times(x, y) for x in a for y in b]
     low, high = min(every), max(every)
     low, high = (
@@ -271,10 +279,9 @@ def _of(*parts: tuple[Interval, Ends], ends: Ends, not_zero: bool = False) -> In
         return Interval(ends, None, not_zero=not_zero)
     slopes = []
     for side in range(Interval.sides):
-        total = 0.0, 0.0
+        total = NONE
         for own, by in moving:
-            part = _product(own[side], by)
-            total = _sum(total, part) if part != (0.0, 0.0) else total
+            total = _sum(total, _product(own[side], by))
         slopes.append(total)
     return Interval(ends, slopes, not_zero=not_zero)
 

@@ -6,6 +6,8 @@ The prover and the check of its certificates read them alike.
 from collections.abc import Iterable
 
 from ...cosim.claims.conditions import Unprovable
+from ...cosim.master.grid import contradicted
+from ...cosim.planning.pruning import prune
 from ...cosim.reading import requested
 from ...cosim.scenes.scene import Scene, differing
 from ...errors import LoomfmuError
@@ -34,11 +36,20 @@ def check_side(scene: Scene, about: Varied, ends: Iterable[float]) -> None:
                 raise LoomfmuError(f"{refused}: {target} keeps a value of its own")
 
 
-def outputs_of(scene: Scene, names: Iterable[str]) -> list[str]:
-    """Return the outputs among what claims name; all others have their start values throughout.
+def needed_for(scene: Scene, names: Iterable[str]) -> Scene:
+    """Return the scene with the mechanisms alone that give what claims name.
 
-    Raises Unprovable for an input that takes its values from elsewhere.
+    Raises Unprovable for an input that takes its values from elsewhere, and where an input has another rate
+    than its own: runs leave all that depends on it undecided.
     """
+    needed = prune(scene, _outputs_of(scene, names), keep_shafts=True).scene
+    if wrong := next(iter(contradicted(needed).values()), ""):
+        raise Unprovable(wrong)
+    return needed
+
+
+def _outputs_of(scene: Scene, names: Iterable[str]) -> list[str]:
+    """Return the outputs among what claims name; all others have their start values throughout."""
     found = []
     fed = {wire.sink for wire in scene.wires} | {(each.instance, each.variable) for each in scene.drives}
     for name in names:
