@@ -19,39 +19,13 @@ NO_LIMIT = 1e4
 # knots of Table 3: guide clearances [m] and length factors [1]
 CLEARANCES = (0.0, 0.30e-3, 0.50e-3, 0.75e-3, 0.80e-3)
 FACTORS = (0.70, 0.80, 0.90, 0.97, 1.00)
-
-
-def _secant(index: int) -> tuple[float, float]:
-    """Width and slope of the interval that begins at a knot."""
-    width = CLEARANCES[index + 1] - CLEARANCES[index]
-    return width, (FACTORS[index + 1] - FACTORS[index]) / width
-
-
-def _end_slope(width: float, slope: float, next_width: float, next_slope: float) -> float:
-    """Slope at an end knot: three-point formula, kept monotone (Fritsch and Butland 1984)."""
-    end = ((2.0 * width + next_width) * slope - width * next_slope) / (width + next_width)
-    if end * slope <= 0.0:
-        return 0.0
-    if fabs(end) > 3.0 * fabs(slope):
-        return 3.0 * slope
-    return end
-
-
-def _knot_slope(index: int) -> float:
-    """Slope of the monotone cubic at a knot: weighted harmonic mean of the neighbouring secants."""
-    if index == 0:
-        width, slope = _secant(0)
-        next_width, next_slope = _secant(1)
-        return _end_slope(width, slope, next_width, next_slope)
-    if index == 4:
-        width, slope = _secant(3)
-        next_width, next_slope = _secant(2)
-        return _end_slope(width, slope, next_width, next_slope)
-    width, slope = _secant(index - 1)
-    next_width, next_slope = _secant(index)
-    near = 2.0 * next_width + width
-    far = next_width + 2.0 * width
-    return (near + far) / (near / slope + far / next_slope)
+SLOPES = (  # of the cubics there [1/m]
+    233.33333333333394,
+    405.4054054054056,
+    362.7639155470247,
+    415.3846153846153,
+    653.3333333333337,
+)
 
 
 def length_factor(clearance: float) -> float:
@@ -70,7 +44,7 @@ def length_factor(clearance: float) -> float:
         width = CLEARANCES[index + 1] - CLEARANCES[index]
         t = _within_one((clearance - CLEARANCES[index]) / width)
         factor += (FACTORS[index + 1] - FACTORS[index]) * t * t * (3.0 - 2.0 * t) + width * t * (1.0 - t) * (
-            (1.0 - t) * _knot_slope(index) - t * _knot_slope(index + 1)
+            (1.0 - t) * SLOPES[index] - t * SLOPES[index + 1]
         )
     return factor
 
