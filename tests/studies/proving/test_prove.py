@@ -99,12 +99,21 @@ def test_a_start_up_and_a_table_of_inputs_are_proven_over_time(loom: Scene, text
     assert prove(above, claims=["margin"]).claims[0].status == "refuted"
 
 
+def test_a_proof_goes_as_far_as_the_steps_of_the_run(loom: Scene) -> None:
+    text = loom.text.split("[[claims]]")[0].replace("revolutions = 2", "revolutions = 8.9999999919")
+    signal = "shaft.angle / 1 rad + weft.travel / 1 m"  # 56.5 at the end, and up to 1.8 of travel
+    ends = claim("below", signal=signal, bound=57.0, window=["0 deg", "1 deg"])
+    (found,) = prove(parse(text + ends, "loom"), over=["weft.lead=-360deg..360deg"]).claims
+    assert found.status == "refuted"
+
+
 @pytest.mark.parametrize(
     ("signal", "status"),
     [
         ("heald_1.lift + 1e14 m + 1 mm - 1e14 m", "refuted"),  # 99 mm
         ("heald_1.lift + max(0 m, 1e14 m + 1 mm - 1e14 m)", "refuted"),
         ("(1e14 m + 1 mm - 1e14 m) + heald_1.lift", "refuted"),
+        ("heald_1.lift - 1e-3 m * 1e17 + 1e17 mm + 1 mm", "refuted"),
         ("heald_1.lift + 1 mm", "refuted"),
         ("heald_1.lift + min(1 m, abs(-0.25 mm))", "proven"),
         ("heald_1.lift * 1e-200 * 1e-200 * 1e200 * 1e200", "proven"),

@@ -40,13 +40,16 @@ def is_expression(signal: str) -> bool:
 
 @dataclass(frozen=True)
 class Node:
-    """A number, a signal or an operation on others; a number is in SI, `factor` leads a signal there."""
+    """A number, a signal or an operation on others; a number is in SI, `factor` leads a signal there.
+
+    A number is that which is written, not the float that is nearest to it.
+    """
 
     kind: str
     parts: tuple["Node", ...] = ()
     text: str = ""
-    number: float = 0.0
-    factor: float = 1.0
+    number: Fraction = Fraction(0)
+    factor: Fraction = Fraction(1)
     dimension: Dimension = NONE
 
     @property
@@ -112,9 +115,9 @@ class Node:
         known = [part.constant for part in self.parts]
         match self.kind:
             case "number":
-                return {}, Fraction(self.number)
+                return {}, self.number
             case "signal":
-                return {self.text: Fraction(self.factor)}, Fraction(0)
+                return {self.text: self.factor}, Fraction(0)
             case "neg":
                 return _sum([self.parts[0].linear], Fraction(-1))
             case "+":
@@ -183,6 +186,11 @@ def read(text: str, unit_of: UnitOf, where: str) -> Expression:
     return Expression.made(node, text, name)
 
 
+def _exact(unit: units.Unit) -> Fraction:
+    """The factor of a unit, in the decimal digits that it has in the table of units."""
+    return Fraction(repr(unit.factor))
+
+
 def known_as(dimension: Dimension) -> Dimension:
     """A dimension as it has a name: in products an angle counts as a number where they have none else."""
     plain = tuple(0 if place == ANGLE else each for place, each in enumerate(dimension))
@@ -236,8 +244,10 @@ class _Reader:
         if other:
             raise self._refused(f"has the unknown unit {shown(other)}{suggestion(other, UNITS)}")
         unit, text = units.unit(name or "1"), found[0].strip()
-        if math.isinf(value := float(number) * unit.factor):
-            raise self._refused(f"has {text} in it, which is too large")
+        size = float(number) * unit.factor
+        if math.isinf(size) or (not size and re.search("[1-9]", number.lower().partition("e")[0])):
+            raise self._refused(f"has {text} in it, which is too {'large' if size else 'small'}")
+        value = Fraction(number) * _exact(unit)
         stands_for = f"{self._mark}{len(self._quantities)}"
         self._quantities[stands_for] = Node("number", (), text, value, dimension=unit.dimension)
         return f" {stands_for} "
@@ -267,7 +277,7 @@ class _Reader:
         unit = UNITS.get(units.canonical(self._unit_of(name)))
         if unit is None:
             raise self._refused(f"has {name} in it, whose unit {shown(self._unit_of(name))} is not known")
-        return Node("signal", (), name, factor=unit.factor, dimension=unit.dimension)
+        return Node("signal", (), name, factor=_exact(unit), dimension=unit.dimension)
 
     def _binary(self, sign: str, left: Node, right: Node) -> Node:
         text = f"({left.text} {sign} {right.text})"

@@ -127,6 +127,11 @@ class Scene:
         """Number of communication steps."""
         return round(self.periods * self.steps_per_period)
 
+    @property
+    def extent(self) -> float:
+        """What these steps take: `periods`, which may be off from whole steps by rounding."""
+        return self.steps / self.steps_per_period
+
 
 def load(path: str | Path, overrides: dict[str, Any] | None = None) -> Scene:
     """Read a scene from a TOML file. Raises LoomfmuError naming the file and what is wrong."""

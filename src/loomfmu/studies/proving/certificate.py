@@ -23,7 +23,7 @@ def write(proofs: Proofs, path: Path, inputs: Sequence[Path] = (), overwrite: bo
     """
     names = [proof.claim for proof in proofs.claims]
     certified = [each for each in proofs.claims if each and each.components and names.count(each.claim) == 1]
-    if not certified or proofs.scene.periods > MOST_REVOLUTIONS:
+    if not certified or proofs.scene.extent > MOST_REVOLUTIONS:
         raise LoomfmuError(f"{path} is not written: no claim that a certificate can confirm is proven")
     scene = proofs.scene
     told: dict[str, Any] = {

@@ -106,7 +106,7 @@ class _Check:
             self._sides |= targets
             self._varied.append(about)
         self._equations = told["equations"]
-        within = f" of {scene.periods:.15g} revolution{'s' * (scene.periods != 1)}"
+        within = f" of {scene.extent:.15g} revolution{'s' * (scene.extent != 1)}"
         for about, (low, high) in zip(self._varied, self._ends, strict=True):
             first, last = (units.exact(end, about.display) for end in (low, high))
             within += f", {about.key} from {first} to {last}" + f" {about.shown_unit}" * (
@@ -139,9 +139,9 @@ class _Check:
         slow, fast = (speed, speed) if place is None else self._ends[place - 1]
         if slow <= 0.0 <= fast or self._scene.step is not None:
             raise Refused("only runs by revolutions, and at a speed that is not 0, can be confirmed")
-        if self._scene.periods > MOST_REVOLUTIONS:
+        if self._scene.extent > MOST_REVOLUTIONS:
             raise Refused(f"more than {MOST_REVOLUTIONS} revolutions cannot be confirmed")
-        turned = 2.0 * math.pi * self._scene.periods
+        turned = 2.0 * math.pi * self._scene.extent
         run = (start, start + turned) if slow > 0.0 else (start - turned, start)
         if isinstance(condition, Spans):
             (tree,) = covers

@@ -18,8 +18,8 @@ HEADINGS = ("", "claim", "how")
 def show(found: Proofs) -> None:
     """Print what was proven of every claim."""
     over = ", ".join(found.sides)
-    duration, by_revolutions = f"{found.scene.periods:.15g}", found.scene.step is None
-    duration += f" revolution{'s' * (found.scene.periods != 1)}" if by_revolutions else " s"
+    duration, by_revolutions = f"{found.scene.extent:.15g}", found.scene.step is None
+    duration += f" revolution{'s' * (found.scene.extent != 1)}" if by_revolutions else " s"
     say(
         f"{found.scene.title}: for all shaft angles of {duration}"
         + (f" and all values of {over}" if over else "")

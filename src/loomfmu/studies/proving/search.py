@@ -121,9 +121,9 @@ class Search:
         if self._speeds[0] * self._speeds[1] <= 0.0:
             raise Unprovable("the speed of the shaft is 0 within the range")
         by_revolutions = self._scene.step is None
-        turned = self._scene.periods * (2.0 * math.pi if by_revolutions else max(speeds))
+        turned = self._scene.extent * (2.0 * math.pi if by_revolutions else max(speeds))
         if chain.timed:
-            return 0.0, turned / min(speeds) if by_revolutions else self._scene.periods
+            return 0.0, turned / min(speeds) if by_revolutions else self._scene.extent
         start = float(self._scene.instances[SHAFT].start(START) or 0.0)
         return (start, start + turned) if self._speeds[0] > 0.0 else (start - turned, start)
 
@@ -155,7 +155,7 @@ class Search:
     def _scale(self, chain: Chain) -> Floats:
         """Return the widths at which the sides of a box are equally wide, where nothing else is known."""
         first, last = self._run_of(chain)
-        return np.array([(last - first) * FINE / self._scene.periods, *(self._box[:, 1] - self._box[:, 0])])
+        return np.array([(last - first) * FINE / self._scene.extent, *(self._box[:, 1] - self._box[:, 0])])
 
     # ---- witnesses
 
