@@ -8,7 +8,7 @@ from scene_texts import claim
 import loomfmu
 from loomfmu.cli import main
 from loomfmu.cosim.claims.arguments import Window
-from loomfmu.cosim.claims.conditions import FALLS, IN, OUT, RISES, UNKNOWN, Always, Spans, Sum
+from loomfmu.cosim.claims.conditions import FALLS, IN, OUT, RISES, UNKNOWN, Always, Sometime, Spans, Sum
 from loomfmu.cosim.reading import requested
 from loomfmu.cosim.scenes.scene import Scene, parse
 from loomfmu.errors import LoomfmuError
@@ -97,6 +97,14 @@ def test_a_start_up_and_a_table_of_inputs_are_proven_over_time(loom: Scene, text
     lowest = loomfmu.evaluate(scene).claims[0].worst
     above = parse(scene.text.replace("bound = -0.6", f"bound = {lowest + 1e-4}", 1), "loom")
     assert prove(above, claims=["margin"]).claims[0].status == "refuted"
+
+
+@pytest.mark.parametrize("revolutions", [20, 100, 1000])
+def test_no_pass_through_a_window_is_lost_to_rounding(revolutions: int) -> None:
+    for start in range(360):
+        window = Window(math.radians(start), math.radians(start + 1))
+        passes = Sometime(Sum((), 1.0), window).ranges(0.0, 2.0 * math.pi * revolutions)
+        assert len(passes) == revolutions, start
 
 
 def test_a_proof_goes_as_far_as_the_steps_of_the_run(loom: Scene) -> None:

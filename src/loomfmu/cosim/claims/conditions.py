@@ -99,7 +99,7 @@ class Sometime:
         Raises Unprovable if there is no such pass.
         """
         found = Always((self.form,), self.window).ranges(first, last)
-        whole = (self.window.width if self.window else last - first) * (1.0 - 1e-12)
+        whole = (self.window.width if self.window else last - first) - STANDS * 2.0 * math.pi
         passes = [(low, high) for low, high in found if high - low >= whole]
         if not passes:
             raise Unprovable("the run does not pass through the window of the claim")

@@ -129,7 +129,7 @@ class Scene:
 
     @property
     def extent(self) -> float:
-        """What these steps take: `periods`, which may be off from whole steps by rounding."""
+        """The `periods` of these whole steps, from which the given ones may be off by rounding."""
         return self.steps / self.steps_per_period
 
 

@@ -46,7 +46,7 @@ def _how(proof: Proof) -> str:
             ", ".join(f"{key} = {value}" for key, value in proof.witness.items()) or "at the scene's values"
         )
     if proof.boxes:
-        return f"{proof.why}; {100 * proof.share:.1f} % of the box is proven"
+        return f"{proof.why}; {math.floor(1000.0 * proof.share) / 10.0:.1f} % of the box is proven"
     return proof.why
 
 

@@ -23,7 +23,6 @@ from .spans import Ends, Floats
 
 MOST = 200_000  # boxes for one condition
 FINE = 1 / 400  # of a revolution: so narrow must a box be that a mechanism is in one of its phases
-CORNERS = 4  # sides, the corners of whose box are all run
 LOOKED_AT = 16  # boxes left open, in whose middles runs look for a witness
 
 
@@ -161,11 +160,11 @@ class Search:
 
     @cached_property
     def _runs(self) -> list[tuple[dict[str, float], Evaluation]]:
-        """Runs at the ends and in the middle of the first two sides, the others along with them, and at the
-        corners of a box with a few more."""
+        """Runs at the ends and in the middle of the first two sides, the others along with them, and at all
+        corners."""
         count = len(self._sides)
         rows = [*product((0.0, 0.5, 1.0), repeat=min(2, count))]
-        rows += product((0.0, 1.0), repeat=count) if 2 < count <= CORNERS else ()
+        rows += product((0.0, 1.0), repeat=count) if count > 2 else ()
         shares = (zip(self._sides, cycle(row), strict=False) for row in rows)
         return [self._run({side.key: side.at(share) for side, share in each}) for each in shares]
 
