@@ -4,7 +4,8 @@ import errno
 import os
 import re
 import signal
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from datetime import date, time
 from pathlib import Path
 
@@ -33,6 +34,21 @@ class LoomfmuError(Exception):
 
     def __init__(self, text: str = ""):
         super().__init__(one_line(text))
+
+
+@contextmanager
+def within(where: object) -> Iterator[None]:
+    """Name the place of an error before what it says.
+
+    >>> with within("belt.mass"):
+    ...     raise LoomfmuError("-1 kg is not positive")
+    Traceback (most recent call last):
+    loomfmu.errors.LoomfmuError: belt.mass: -1 kg is not positive
+    """
+    try:
+        yield
+    except LoomfmuError as error:
+        raise LoomfmuError(f"{where}: {error}") from None
 
 
 def described(error: BaseException) -> str:

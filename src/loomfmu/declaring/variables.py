@@ -9,7 +9,7 @@ from itertools import groupby
 from typing import Any, ClassVar, NamedTuple
 
 from .. import units
-from ..errors import LoomfmuError, numbered
+from ..errors import LoomfmuError, numbered, within
 from .declarations import MAKERS
 
 LARGEST_INTEGER = 2147483647  # of FMI 2
@@ -119,10 +119,8 @@ class Variable:
 
         Raises LoomfmuError for a quantity that this variable cannot have.
         """
-        try:
+        with within(name):
             value = units.parse(given, self.unit)
-        except units.UnitError as error:
-            raise LoomfmuError(f"{name}: {error}") from None
         complaint = replace(self, name=name).complaint(value)
         if complaint:
             raise LoomfmuError(complaint)

@@ -12,7 +12,7 @@ from ..components.belt_monitor import BeltMonitor
 from ..components.dobby.drive import DobbyDrive
 from ..components.heald_frame import HealdFrame
 from ..declaring.variables import Variable, variables_of
-from ..errors import LoomfmuError
+from ..errors import LoomfmuError, within
 
 Quantity = float | str  # a number in SI, or a text such as "0.5 mm"
 
@@ -98,10 +98,8 @@ def listed(name: str, given: Any, unit: str) -> NDArray[np.float64]:
 
 
 def _number(where: str, given: Any, unit: str) -> float:
-    try:
+    with within(where):
         return units.parse(given, unit)
-    except units.UnitError as error:
-        raise LoomfmuError(f"{where}: {error}") from None
 
 
 def whole(name: str, given: Any, low: int) -> int:

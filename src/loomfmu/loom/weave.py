@@ -9,7 +9,7 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..errors import LoomfmuError, shown
+from ..errors import LoomfmuError, shown, within
 from ..files import source
 
 MOST_FRAMES = 20  # of the KRU-20 dobby
@@ -126,10 +126,8 @@ def of_wif(text: str, path: Path) -> Weave:
     sections = {name.upper(): dict(parser[name]) for name in parser.sections()}
     if "WIF" not in sections:
         raise LoomfmuError(f"{path}: not a WIF file (it has no section [WIF])")
-    try:
+    with within(path):
         return _weave(sections)
-    except LoomfmuError as error:
-        raise LoomfmuError(f"{path}: {error}") from None
 
 
 def _weave(sections: dict[str, dict[str, str]]) -> Weave:

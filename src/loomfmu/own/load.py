@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 from ..components import COMPONENTS
 from ..declaring.variables import Component
-from ..errors import LoomfmuError, described, suggestion
+from ..errors import LoomfmuError, described, suggestion, within
 from ..files import text_of
 from . import declared
 
@@ -204,10 +204,8 @@ def _check(chosen: type[Component], shown: Path, text: str) -> None:
         raise LoomfmuError(f"{shown}, line {line(text, chosen.__name__, fault.field)}: {fault.text}")
     from ..fmi.native.translate import translate
 
-    try:
+    with within(shown):
         translate(chosen)
-    except LoomfmuError as error:
-        raise LoomfmuError(f"{shown}: {error}") from None
 
 
 def line(text: str, name: str, field: str) -> int:

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from .. import units
-from ..errors import LoomfmuError
+from ..errors import LoomfmuError, within
 from ..traces import Trace
 from ..traces.plotting import Extent
 
@@ -54,7 +54,5 @@ def _turn(trace: Trace, number: int, over: str, fold: bool) -> tuple[float, floa
 
 def _number(key: str, text: str, unit: str, factor: float) -> float:
     """Return a place on the axis; a plain number is in the unit of the axis."""
-    try:
+    with within(f"{key} {text}"):
         return float(text) if units.is_plain(text) else factor * units.parse(text, unit)
-    except units.UnitError as error:
-        raise LoomfmuError(f"{key} {text}: {error}") from None

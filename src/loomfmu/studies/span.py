@@ -12,7 +12,7 @@ from .. import units
 from ..cosim.importing.fmus import Port
 from ..cosim.scenes.notes import check_effect
 from ..cosim.scenes.scene import Scene
-from ..errors import LoomfmuError, shown
+from ..errors import LoomfmuError, shown, within
 from ..sweeps.varied import Keyed, Varied, varied
 
 SENSIBLE = 10.0  # times the scene's value: bounds that are farther apart say nothing about a range
@@ -84,10 +84,8 @@ def span_of(scene: Scene, text: str, from_: Any = None, to: Any = None, option: 
         raise LoomfmuError(f"{option} = {shown(text)} is not a variable such as 'shaft.speed'")
     key, equals, wanted = (part.strip() for part in text.partition("="))
     if equals:
-        try:
+        with within(f"{option} {key}"):
             first, last = units.ends_of(wanted)
-        except units.UnitError as error:
-            raise LoomfmuError(f"{option} {key}: {error}") from None
         if not (first and last):
             raise LoomfmuError(f"{option} {text}: {shown(wanted)} is not a range; {FORM}")
         if from_ is not None or to is not None:

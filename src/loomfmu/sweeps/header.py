@@ -15,7 +15,7 @@ from ..cosim.scenes.notes import check_effect
 from ..cosim.scenes.scene import Scene
 from ..cosim.scenes.settings import text as text_in
 from ..cosim.scenes.settings import toml
-from ..errors import LoomfmuError, suggestion
+from ..errors import LoomfmuError, suggestion, within
 from ..files import text_of
 from .axes import Axis, flattened
 from .varied import Varied, varied
@@ -49,14 +49,12 @@ def read(
     Raises LoomfmuError naming the file and what is wrong, before anything runs.
     """
     text = text_of(path)
-    try:
+    with within(path):
         tables = toml(text, what)
         for key in tables:
             if key not in keys:
                 raise LoomfmuError(f"{key} is unknown{suggestion(key, keys)}")
         return parse(_header(text, tables, path, what), tables)
-    except LoomfmuError as error:
-        raise LoomfmuError(f"{path}: {error}") from None
 
 
 def _header(text: str, tables: dict[str, Any], path: Path, what: str) -> Header:
@@ -84,10 +82,8 @@ def variables(head: Header, tables: Mapping[str, Mapping[str, Any]]) -> dict[str
     found: dict[str, Varied] = {}
     for where, keys in tables.items():
         for key in keys:
-            try:
+            with within(where):
                 each = found[f"{where}.{key}"] = varied(head.scene, key)
-            except LoomfmuError as error:
-                raise LoomfmuError(f"{where}: {error}") from None
             for target in each.targets:
                 if target in taken:
                     raise LoomfmuError(f"{where}.{key} sets {target}, which {taken[target]} already sets")

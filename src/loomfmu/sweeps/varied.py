@@ -11,7 +11,7 @@ from ..cosim.scenes.instance_tables import overridden, unit_of
 from ..cosim.scenes.instances import TOLERANCE, Instance
 from ..cosim.scenes.scene import Scene, check_free
 from ..cosim.scenes.settings import COARSE, TIMES, truth
-from ..errors import LoomfmuError, listed
+from ..errors import LoomfmuError, listed, within
 from ..machines import TAKERS, named
 from ..own.declared import FILES, ISOLATED, PARAMETER_SETS
 
@@ -108,10 +108,8 @@ def _of_scene(key: str) -> Varied:
     unit = "s" if key in SECONDS else "1"
 
     def read(given: Any) -> Value:
-        try:
+        with within(key):
             value = units.parse(given, unit)
-        except units.UnitError as error:
-            raise LoomfmuError(f"{key}: {error}") from None
         if not math.isfinite(value):
             raise LoomfmuError(f"{key} = {value} is not finite")
         if key in COUNTS and value != int(value):

@@ -14,7 +14,7 @@ import numpy as np
 from .. import units
 from ..declaring.upstream import sources_of, upstream
 from ..declaring.variables import SHARED
-from ..errors import LoomfmuError, listed, path_of, shown
+from ..errors import LoomfmuError, listed, path_of, shown, within
 from .comparison import Change, Comparison, Difference
 from .meeting import Meeting, meet
 from .reader import Trace
@@ -39,10 +39,8 @@ class Tolerance:
         """Return by how much two values of that name may differ; whole numbers and texts are exact."""
         for pattern, amount in self.absolute.items():
             if name == pattern or fnmatch.fnmatchcase(name, pattern):
-                try:
+                with within(f"tolerance of {name}"):
                     return units.parse(amount, unit)
-                except LoomfmuError as error:
-                    raise LoomfmuError(f"tolerance of {name}: {error}") from None
         return 0.0 if exact else self.share * scale
 
     def check(self, names: Sequence[str]) -> None:

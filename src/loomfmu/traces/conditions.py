@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import units
-from ..errors import LoomfmuError, shown
-from ..units import UnitError
+from ..errors import LoomfmuError, shown, within
 
 Floats = NDArray[np.float64]
 
@@ -29,10 +28,8 @@ def angles_where(run: Any, condition: str) -> Floats:
         raise LoomfmuError(f"{run.name}: {run.standing}, so there are no angles")
     signal, comparison, quantity = match.groups()
     values = run[signal]
-    try:
+    with within(f"the condition {shown(condition)}"):
         bound = units.parse(quantity, run.unit(signal))
-    except UnitError as error:
-        raise LoomfmuError(f"the condition {shown(condition)}: {error}") from None
     if bound and run.unit(signal) != "1" and units.is_plain(quantity):
         meant = f"{signal} {comparison} {quantity} {run.displayed(signal)[1]}"
         raise LoomfmuError(f'the condition {shown(condition)}: {quantity} has no unit; write "{meant}"')

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 from ... import machines
 from ...components import COMPONENTS
-from ...errors import LoomfmuError, listed, shown, suggestion
+from ...errors import LoomfmuError, listed, shown, suggestion, within
 from ...own import load
 from ...own.declared import FILES, PARAMETER_SETS
 from ..importing import fmus
@@ -126,12 +126,10 @@ def _of_component(name: str, component: str, directory: Path, texts: dict[str, s
     """The FMU of a component: one of ours, or one of a Python file, which is run."""
     if not load.is_file(component):
         return fmus.of_component(component)
-    try:
+    with within(f"{name}.component"):
         made = load.component(component, directory)
         texts |= load.texts(component, directory, load.COMPONENT)
         return fmus.of_class(made)
-    except LoomfmuError as error:
-        raise LoomfmuError(f"{name}.component: {error}") from None
 
 
 # ---- values that differ from the scene's

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ... import files
-from ...errors import LoomfmuError
+from ...errors import LoomfmuError, within
 from ..claims import own_claims
 from ..importing.fmus import Value
 from ..importing.process import AVAILABLE
@@ -137,10 +137,8 @@ def load(path: str | Path, overrides: dict[str, Any] | None = None) -> Scene:
     """Read a scene from a TOML file. Raises LoomfmuError naming the file and what is wrong."""
     path = Path(path)
     text = files.text_of(path)
-    try:
+    with within(path):
         return parse(text, path.stem, overrides, path.parent, path)
-    except LoomfmuError as error:
-        raise LoomfmuError(f"{path}: {error}") from None
 
 
 def parse(
@@ -285,7 +283,7 @@ def _check_single(scene: Scene) -> None:
 def _check_tolerances(scene: Scene) -> None:
     """Refuse tolerances of what `--set` cannot set either, and ends that are not among its values."""
     for key, given in scene.tolerances.items():
-        try:
+        with within("tolerances"):
             pairs = overridden(scene.instances, key)
             if not pairs[0][0]:
                 raise LoomfmuError(f"{key} cannot have a tolerance, only parameters and inputs can")
@@ -299,5 +297,3 @@ def _check_tolerances(scene: Scene) -> None:
                     found.append(probe.values.get(probe.fmu.name_of(variable), 0.0))
                 if ends and all(isinstance(each, float) for each in found) and not found[0] < found[1]:
                     raise LoomfmuError(f"{key}: the range from {ends[0]} to {ends[1]} is empty")
-        except LoomfmuError as error:
-            raise LoomfmuError(f"tolerances: {error}") from None

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ... import units
-from ...errors import LoomfmuError, check_text, listed, shown, suggestion
+from ...errors import LoomfmuError, check_text, listed, shown, suggestion, within
 from ...own.declared import ISOLATED
 from .tolerances import tolerances_of
 
@@ -297,10 +297,8 @@ def truth(given: Any, where: str) -> bool:
 
 def seconds(given: Any, key: str, low: float) -> float:
     """A time within bounds [s]."""
-    try:
+    with within(key):
         return number(units.parse(given, "s"), key, low, 1e9)
-    except units.UnitError as error:
-        raise LoomfmuError(f"{key}: {error}") from None
 
 
 # the keys that say one thing each, and how they are read; a scene has their defaults

@@ -6,7 +6,7 @@ from typing import Any
 
 from ...components import COMPONENTS
 from ...declaring.variables import Terminal, Variable
-from ...errors import LoomfmuError, listed, shown, suggestion
+from ...errors import LoomfmuError, listed, shown, suggestion, within
 from ..importing.conversions import SAME, Linear
 from ..importing.facts import ALL, Facts, facts_of
 from ..importing.ports import conversion
@@ -87,10 +87,8 @@ def wire(instances: dict[str, Instance], sink: str, source: Any, known: Linear |
     if origin.kind != to.kind:
         raise LoomfmuError(f"{where}: {source} is of type {origin.kind}, {sink} of type {to.kind}")
     if known is None:
-        try:
+        with within(where):
             known = conversion(source, origin.stated, sink, to.stated)
-        except LoomfmuError as error:
-            raise LoomfmuError(f"{where}: {error}") from None
     elif known != SAME and to.kind != "Real":
         raise LoomfmuError(f"{where}: a value of type {to.kind} cannot be transformed")
     return Wire(source=ends[1], sink=ends[0], conversion=known)

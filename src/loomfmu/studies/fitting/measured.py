@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ... import units
 from ...cosim.planning.requested import output_port
 from ...cosim.scenes.scene import Scene
-from ...errors import LoomfmuError, listed, shown
+from ...errors import LoomfmuError, listed, shown, within
 from ...files import text_of
 from ...sweeps.varied import Varied
 from ...traces import Trace
@@ -170,10 +170,8 @@ def factor_to(where: str, name: str, stated: str, wanted: str) -> float:
         if stated != wanted:
             raise LoomfmuError(misfit)
         return 1.0
-    try:
+    with within(f"{where}: column {name}"):
         given = units.unit(stated, like=wanted)
-    except units.UnitError as error:
-        raise LoomfmuError(f"{where}: column {name}: {error}") from None
     if given.dimension != units.unit(wanted).dimension:
         raise LoomfmuError(misfit)
     return given.factor / units.unit(wanted).factor

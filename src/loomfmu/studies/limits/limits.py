@@ -18,7 +18,7 @@ from ...cosim.run import prepare
 from ...cosim.scenes.headings import heading
 from ...cosim.scenes.scene import Scene
 from ...display.progress import progress as progress_bar
-from ...errors import LoomfmuError, listed, shown
+from ...errors import LoomfmuError, listed, shown, within
 from ...traces import Verdict
 from ..cases import Case
 from ..corners import corners_of
@@ -346,9 +346,7 @@ def _boundary(
     values = second.points(rows)
     found = []
     for value in values:
-        try:
+        with within(f"at {second.key} = {second.show(value)}"):
             found.append(limits_of(loom, first, points, second.setting(value), advance, cases))
-        except LoomfmuError as error:
-            raise LoomfmuError(f"at {second.key} = {second.show(value)}: {error}") from None
     title = _title(loom, [first.key, second.key], cases)
     return Boundary(title, first, second, tuple(values), tuple(found))

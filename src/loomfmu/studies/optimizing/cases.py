@@ -4,7 +4,7 @@ from collections.abc import Collection
 from itertools import product
 from typing import Any
 
-from ...errors import LoomfmuError, shown
+from ...errors import LoomfmuError, shown, within
 from ...sweeps.axes import flattened
 from ...sweeps.header import Header
 from ...sweeps.varied import varied
@@ -51,12 +51,10 @@ def _case(head: Header, table: dict[str, Any], number: int) -> Case:
         raise LoomfmuError(f'{where} sets nothing; give it values, such as "shaft.speed" = "450 rpm"')
     settings, doubts = dict[str, Any](), list[str]()
     for key, value in given.items():
-        try:
+        with within(where):
             variable = varied(head.scene, key)
             settings[key] = variable.setting(variable.read(value))
             doubts.append(variable.doubt(value))
-        except LoomfmuError as error:
-            raise LoomfmuError(f"{where}: {error}") from None
     return Case(name, settings, tuple(filter(None, doubts)))
 
 

@@ -18,7 +18,7 @@ from ...cosim.results import Evaluation
 from ...cosim.scenes.scene import files_of
 from ...display.printed import as_csv
 from ...display.progress import progress as progress_bar
-from ...errors import LoomfmuError, listed, path_of
+from ...errors import LoomfmuError, listed, path_of, within
 from ...extras import install, installed, need
 from ...files import ANY, write_file
 from ...sweeps.directory import PARTIAL, Contents, owned
@@ -73,13 +73,11 @@ def optimize(
     fingerprint = hashlib.sha256(f"{study.text}\0{job.identity}{cases}".encode()).hexdigest()
     with resumable(files.directory, "runs"), ExitStack() as stack:
         own = own_point(study)
-        try:  # what could not be run or written is refused now, not after the search
+        with within(path):  # what could not be run or written is refused now, not after the search
             files.check(study, own)
             scene = protected(study.scene)
             loom = Prepared(scene, None, study.flavour, (), study.measures)
             tried = [evaluated(loom, case, "none") for case in study.situations]
-        except LoomfmuError as error:
-            raise LoomfmuError(f"{path}: {error}") from None
         verdicts = tried[0].claims
         limits = limits_of(study, verdicts, path)
         inputs = [path, *files_of(study.scene)]

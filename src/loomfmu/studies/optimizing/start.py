@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ... import units
-from ...errors import LoomfmuError
+from ...errors import LoomfmuError, within
 from ...sweeps.varied import Value
 from ...traces import Verdict
 from .runs import Design, Limits, Point, Runs
@@ -42,10 +42,8 @@ def limits_of(study: Study, verdicts: Sequence[Verdict], path: Path) -> Limits:
     """
     amounts, scales = [], []
     for verdict, share, amount in zip(verdicts, study.shares, study.amounts, strict=True):
-        try:
+        with within(f"{path}: safety: {verdict.claim}"):
             amounts.append(units.parse(amount, verdict.unit) if amount else 0.0)
-        except units.UnitError as error:
-            raise LoomfmuError(f"{path}: safety: {verdict.claim}: {error}") from None
         if share and not verdict.bound:
             raise LoomfmuError(
                 f"{path}: safety = {share:g} is a share of the bound, and that of {verdict.claim!r} is 0; in"

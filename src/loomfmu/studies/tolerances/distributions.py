@@ -14,7 +14,7 @@ from ... import units
 from ...cosim.scenes.notes import check_effect
 from ...cosim.scenes.scene import Scene
 from ...cosim.scenes.tolerances import ends_of
-from ...errors import LoomfmuError, listed
+from ...errors import LoomfmuError, listed, within
 from ...sweeps.varied import Keyed, Varied, varied
 from ..fitting.measured import Floats, factor_to, named_column, rows_of, values_of
 from ..span import port_of
@@ -80,10 +80,8 @@ def _normal(variable: Varied, table: Mapping[str, Any], where: str, doubts: tupl
     from scipy import stats
 
     mean = float(variable.read(table["normal"][0]))
-    try:
+    with within(where):
         deviation = units.parse(table["normal"][1], variable.unit)
-    except units.UnitError as error:
-        raise LoomfmuError(f"{where}: {error}") from None
     if not 0.0 < deviation < math.inf:
         raise LoomfmuError(f"{where}: the standard deviation {variable.show(deviation)} must be positive")
     text = f"normal, mean {variable.show(mean)}, standard deviation {variable.show(deviation)}"
