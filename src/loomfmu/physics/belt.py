@@ -54,14 +54,22 @@ def _within_one(t: float) -> float:
     return 0.5 * (fabs(t) - fabs(t - 1.0) + 1.0)
 
 
+def euler_column(free_length: float, factor: float, stiffness: float) -> tuple[float, float]:
+    """Euler's critical load `pi^2 EI / (mu l)^2`, equation (8), as `pi^2 EI` [N m2] and `mu l` [m].
+
+    Apart, since the load grows without bound towards the guide, where `mu l` is 0.
+    """
+    return pi * pi * stiffness, factor * free_length
+
+
 def critical_force(free_length: float, factor: float, stiffness: float) -> float:
-    """Euler's critical load of the free section [N], `pi^2 EI / (mu l)^2`, equation (8).
+    """Euler's critical load of the free section [N], equation (8).
 
     >>> round(critical_force(0.174, 0.8, 0.25), 1)
     127.3
     """
-    reduced = factor * free_length
-    return pi * pi * stiffness / (reduced * reduced)
+    strength, reduced = euler_column(free_length, factor, stiffness)
+    return strength / (reduced * reduced)
 
 
 def margin(free_length: float, axial_force: float, factor: float, stiffness: float) -> float:
@@ -75,8 +83,8 @@ def margin(free_length: float, axial_force: float, factor: float, stiffness: flo
     """
     if free_length <= 0.0:
         return 1.0
-    reduced = factor * free_length
-    return 1.0 - axial_force * reduced * reduced / (pi * pi * stiffness)
+    strength, reduced = euler_column(free_length, factor, stiffness)
+    return 1.0 - axial_force * reduced * reduced / strength
 
 
 def weft_load(tension: float, velocity: float, taker: bool) -> float:
@@ -118,11 +126,10 @@ def speed_limit(
     """
     if free_length <= 0.0 or slope <= 0.0:
         return NO_LIMIT
-    reduced = factor * free_length
-    # without the critical force, which grows without bound towards the guide
-    if pi * pi * stiffness >= (tension + NO_LIMIT * NO_LIMIT * mass * slope) * reduced * reduced:
+    strength, reduced = euler_column(free_length, factor, stiffness)
+    if strength >= (tension + NO_LIMIT * NO_LIMIT * mass * slope) * reduced * reduced:
         return NO_LIMIT
-    spare = critical_force(free_length, factor, stiffness) - tension
+    spare = strength / (reduced * reduced) - tension
     if spare <= 0.0:
         return 0.0
     return sqrt(spare / (mass * slope))

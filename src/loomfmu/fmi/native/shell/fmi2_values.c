@@ -86,50 +86,25 @@ fmi2Status fmi2SetString(fmi2Component component, const fmi2ValueReference refer
     return fmu_no_text(component, SETTING, "fmi2SetString", references, count, values);
 }
 
-fmi2Status fmi2SetReal(fmi2Component component, const fmi2ValueReference references[], size_t count,
-                       const fmi2Real values[])
-{
-    Instance *instance = component;
-    Status status = OK;
-    size_t i;
-    if (!fmu_ready(instance, CONTINUOUS_SETTING, "fmi2SetReal", references, count, values)) {
-        return fmi2Error;
+#define FMU_SETS(TYPE, MODES_TO_SET, SET)                                                                  \
+    fmi2Status fmi2Set##TYPE(fmi2Component component, const fmi2ValueReference references[], size_t count, \
+                             const fmi2##TYPE values[])                                                    \
+    {                                                                                                      \
+        Instance *instance = component;                                                                    \
+        Status status = OK;                                                                                \
+        size_t i;                                                                                          \
+        if (!fmu_ready(instance, MODES_TO_SET, "fmi2Set" #TYPE, references, count, values)) {              \
+            return fmi2Error;                                                                              \
+        }                                                                                                  \
+        for (i = 0; i < count && status == OK; i++) {                                                      \
+            status = SET(instance, references[i], values[i]);                                              \
+        }                                                                                                  \
+        return (fmi2Status)status;                                                                         \
     }
-    for (i = 0; i < count && status == OK; i++) {
-        status = fmu_set_real(instance, references[i], values[i]);
-    }
-    return (fmi2Status)status;
-}
 
-fmi2Status fmi2SetInteger(fmi2Component component, const fmi2ValueReference references[], size_t count,
-                          const fmi2Integer values[])
-{
-    Instance *instance = component;
-    Status status = OK;
-    size_t i;
-    if (!fmu_ready(instance, SETTING, "fmi2SetInteger", references, count, values)) {
-        return fmi2Error;
-    }
-    for (i = 0; i < count && status == OK; i++) {
-        status = fmu_set_integer(instance, references[i], values[i]);
-    }
-    return (fmi2Status)status;
-}
-
-fmi2Status fmi2SetBoolean(fmi2Component component, const fmi2ValueReference references[], size_t count,
-                          const fmi2Boolean values[])
-{
-    Instance *instance = component;
-    Status status = OK;
-    size_t i;
-    if (!fmu_ready(instance, SETTING, "fmi2SetBoolean", references, count, values)) {
-        return fmi2Error;
-    }
-    for (i = 0; i < count && status == OK; i++) {
-        status = fmu_set_boolean(instance, references[i], values[i] != fmi2False);
-    }
-    return (fmi2Status)status;
-}
+FMU_SETS(Real, CONTINUOUS_SETTING, fmu_set_real)
+FMU_SETS(Integer, SETTING, fmu_set_integer)
+FMU_SETS(Boolean, SETTING, fmu_set_boolean)
 
 /* ---- the state as a whole */
 

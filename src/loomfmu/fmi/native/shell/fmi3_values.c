@@ -18,103 +18,50 @@ static bool fmu_ready_for(Instance *instance, int modes, const char *function, c
     return true;
 }
 
-fmi3Status fmi3GetFloat64(fmi3Instance handle, const fmi3ValueReference references[], size_t count,
-                          fmi3Float64 values[], size_t value_count)
+static Status fmu_get_float(Instance *instance, fmi3ValueReference reference, double *value)
 {
-    Instance *instance = handle;
-    Status status;
-    size_t i;
-    if (!fmu_ready_for(instance, READING, "fmi3GetFloat64", references, count, values, value_count)) {
-        return fmi3Error;
+    if (reference != TIME_REFERENCE) {
+        return fmu_get_real(instance, reference, value);
     }
-    status = fmu_prepare(instance);
-    for (i = 0; i < count && status == OK; i++) {
-        if (references[i] == TIME_REFERENCE) {
-            values[i] = instance->state.time;
-        } else {
-            status = fmu_get_real(instance, references[i], &values[i]);
-        }
-    }
-    return (fmi3Status)status;
+    *value = instance->state.time;
+    return OK;
 }
 
-fmi3Status fmi3GetInt64(fmi3Instance handle, const fmi3ValueReference references[], size_t count,
-                        fmi3Int64 values[], size_t value_count)
-{
-    Instance *instance = handle;
-    Status status;
-    size_t i;
-    if (!fmu_ready_for(instance, READING, "fmi3GetInt64", references, count, values, value_count)) {
-        return fmi3Error;
+#define FMU_VALUES(TYPE, MODES_TO_SET, GET, SET)                                                           \
+    fmi3Status fmi3Get##TYPE(fmi3Instance handle, const fmi3ValueReference references[], size_t count,     \
+                             fmi3##TYPE values[], size_t value_count)                                      \
+    {                                                                                                      \
+        Instance *instance = handle;                                                                       \
+        Status status;                                                                                     \
+        size_t i;                                                                                          \
+        if (!fmu_ready_for(instance, READING, "fmi3Get" #TYPE, references, count, values, value_count)) {  \
+            return fmi3Error;                                                                              \
+        }                                                                                                  \
+        status = fmu_prepare(instance);                                                                    \
+        for (i = 0; i < count && status == OK; i++) {                                                      \
+            status = GET(instance, references[i], &values[i]);                                             \
+        }                                                                                                  \
+        return (fmi3Status)status;                                                                         \
+    }                                                                                                      \
+    fmi3Status fmi3Set##TYPE(fmi3Instance handle, const fmi3ValueReference references[], size_t count,     \
+                             const fmi3##TYPE values[], size_t value_count)                                \
+    {                                                                                                      \
+        Instance *instance = handle;                                                                       \
+        Status status = OK;                                                                                \
+        size_t i;                                                                                          \
+        if (!fmu_ready_for(instance, MODES_TO_SET, "fmi3Set" #TYPE, references, count, values,             \
+                           value_count)) {                                                                 \
+            return fmi3Error;                                                                              \
+        }                                                                                                  \
+        for (i = 0; i < count && status == OK; i++) {                                                      \
+            status = SET(instance, references[i], values[i]);                                              \
+        }                                                                                                  \
+        return (fmi3Status)status;                                                                         \
     }
-    status = fmu_prepare(instance);
-    for (i = 0; i < count && status == OK; i++) {
-        status = fmu_get_integer(instance, references[i], &values[i]);
-    }
-    return (fmi3Status)status;
-}
 
-fmi3Status fmi3GetBoolean(fmi3Instance handle, const fmi3ValueReference references[], size_t count,
-                          fmi3Boolean values[], size_t value_count)
-{
-    Instance *instance = handle;
-    Status status;
-    size_t i;
-    if (!fmu_ready_for(instance, READING, "fmi3GetBoolean", references, count, values, value_count)) {
-        return fmi3Error;
-    }
-    status = fmu_prepare(instance);
-    for (i = 0; i < count && status == OK; i++) {
-        status = fmu_get_boolean(instance, references[i], &values[i]);
-    }
-    return (fmi3Status)status;
-}
-
-fmi3Status fmi3SetFloat64(fmi3Instance handle, const fmi3ValueReference references[], size_t count,
-                          const fmi3Float64 values[], size_t value_count)
-{
-    Instance *instance = handle;
-    Status status = OK;
-    size_t i;
-    if (!fmu_ready_for(instance, CONTINUOUS_SETTING, "fmi3SetFloat64", references, count, values,
-                       value_count)) {
-        return fmi3Error;
-    }
-    for (i = 0; i < count && status == OK; i++) {
-        status = fmu_set_real(instance, references[i], values[i]);
-    }
-    return (fmi3Status)status;
-}
-
-fmi3Status fmi3SetInt64(fmi3Instance handle, const fmi3ValueReference references[], size_t count,
-                        const fmi3Int64 values[], size_t value_count)
-{
-    Instance *instance = handle;
-    Status status = OK;
-    size_t i;
-    if (!fmu_ready_for(instance, SETTING, "fmi3SetInt64", references, count, values, value_count)) {
-        return fmi3Error;
-    }
-    for (i = 0; i < count && status == OK; i++) {
-        status = fmu_set_integer(instance, references[i], values[i]);
-    }
-    return (fmi3Status)status;
-}
-
-fmi3Status fmi3SetBoolean(fmi3Instance handle, const fmi3ValueReference references[], size_t count,
-                          const fmi3Boolean values[], size_t value_count)
-{
-    Instance *instance = handle;
-    Status status = OK;
-    size_t i;
-    if (!fmu_ready_for(instance, SETTING, "fmi3SetBoolean", references, count, values, value_count)) {
-        return fmi3Error;
-    }
-    for (i = 0; i < count && status == OK; i++) {
-        status = fmu_set_boolean(instance, references[i], values[i]);
-    }
-    return (fmi3Status)status;
-}
+FMU_VALUES(Float64, CONTINUOUS_SETTING, fmu_get_float, fmu_set_real)
+FMU_VALUES(Int64, SETTING, fmu_get_integer, fmu_set_integer)
+FMU_VALUES(Boolean, SETTING, fmu_get_boolean, fmu_set_boolean)
 
 /* ---- the state as a whole */
 
