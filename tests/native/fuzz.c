@@ -4,19 +4,12 @@
  */
 #include "fmi2.c"
 
-#define INSTANCES 3
-#define SAVED 4
+#include "fuzz.h"
 
-static uint64_t seed;
-static long stepped, restored, unpacked, refused; /* that the fuzz gets somewhere */
+#define INSTANCES 3
+
 static long living;
 static int starving;
-
-static unsigned pick(unsigned below)
-{
-    seed = seed * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-    return (unsigned)(seed >> 33) % below;
-}
 
 static void *allocate(size_t count, size_t size)
 {
@@ -46,55 +39,10 @@ static void logger(fmi2ComponentEnvironment environment, fmi2String name, fmi2St
     }
 }
 
-static double any_real(void)
-{
-    static const double odd[] = {0.0, -0.0, 1.0, -1.0, 1e-3, 1e-300, 5e-324, 1e10, 1e18, 1e300, -1e300};
-    unsigned kind = pick(20);
-    if (kind == 0) {
-        return NAN;
-    }
-    if (kind == 1) {
-        return pick(2) ? HUGE_VAL : -HUGE_VAL;
-    }
-    if (kind < 8) {
-        return odd[pick(sizeof odd / sizeof *odd)];
-    }
-    return ((double)pick(2000001) - 1e6) * pow(10.0, (double)pick(16) - 12.0);
-}
-
-/* Mostly a value that the variable takes, so that calls get past the checks. */
-static double fitting_real(unsigned reference)
-{
-    double low, high;
-    const unsigned place = reference - FIRST_REFERENCE;
-    if (place >= VARIABLES || pick(12) == 0) {
-        return any_real();
-    }
-    low = rows[place].low > -1e6 ? rows[place].low : -1e3;
-    high = rows[place].high < 1e6 ? rows[place].high : 1e3;
-    return low + (high - low) * (double)pick(1000001) * 1e-6;
-}
-
 static int any_integer(void)
 {
     static const int odd[] = {0, 1, -1, 2, 3, 2147483647, -2147483647 - 1};
     return pick(3) == 0 ? odd[pick(7)] : (int)pick(200) - 40;
-}
-
-/* Mostly a reference of the kind asked for and, when setting, one that may be set. */
-static unsigned any_reference(Kind kind, bool setting)
-{
-    unsigned tries;
-    if (pick(40) == 0) {
-        return pick(2) ? pick(VARIABLES + 3) : 4294967295U;
-    }
-    for (tries = 0; tries < 100; tries++) {
-        unsigned place = pick(VARIABLES);
-        if (rows[place].kind == kind && (!setting || rows[place].causality <= INPUT)) {
-            return place + FIRST_REFERENCE;
-        }
-    }
-    return pick(VARIABLES) + FIRST_REFERENCE;
 }
 
 static const char *any_token(void)
@@ -148,31 +96,14 @@ static void derivatives(fmi2Component component)
     }
 }
 
-/* Bytes of a true state, damaged or not, or any bytes at all, into a handle. */
 static void bytes(fmi2Component component, fmi2FMUstate *saved)
 {
-    char content[STATE_SIZE + 64];
-    size_t i, size = pick(4) ? STATE_SIZE : pick((unsigned)sizeof content);
-    for (i = 0; i < size; i++) {
-        content[i] = (char)pick(256);
-    }
+    char content[ROOM];
+    size_t size = any_bytes((unsigned char *)content);
     if (*saved != NULL && pick(3) != 0 && fmi2SerializeFMUstate(component, *saved, content, size) == fmi2OK) {
-        unsigned damage = pick(4);
-        while (damage-- > 0) {
-            content[pick(STATE_SIZE)] ^= (char)(1 << pick(8));
-        }
-        if (pick(3) == 0) { /* a checksum that fits lets damage pass on to the other checks */
-            Stream stream = {(unsigned char *)content + STATE_SIZE - 8, true};
-            memcpy(content, LAYOUT, 8);
-            memcpy(content + 8, MODEL_TOKEN, TOKEN_SIZE);
-            (void)fmu_pass_bits(&stream, fmu_checksum((unsigned char *)content, STATE_SIZE - 8), 8);
-        }
+        damage((unsigned char *)content);
     }
-    if (fmi2DeSerializeFMUstate(component, pick(60) ? content : NULL, size, saved) == fmi2OK) {
-        unpacked++;
-    } else {
-        refused++;
-    }
+    count_bytes(fmi2DeSerializeFMUstate(component, pick(60) ? content : NULL, size, saved) == fmi2OK);
 }
 
 static void states(fmi2Component component, fmi2FMUstate *saved)

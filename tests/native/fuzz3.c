@@ -1,17 +1,11 @@
 /* The host of fuzz.c for FMI 3: random calls to both interfaces, and random bytes for states. */
 #include "fmi3.c"
 
+#include "fuzz.h"
+
 #define INSTANCES 4
-#define SAVED 4
 
-static uint64_t seed;
-static long stepped, solved, restored, unpacked, refused; /* that the fuzz gets somewhere */
-
-static unsigned pick(unsigned below)
-{
-    seed = seed * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-    return (unsigned)(seed >> 33) % below;
-}
+static long solved;
 
 static void logger(fmi3InstanceEnvironment environment, fmi3Status status, fmi3String category,
                    fmi3String message)
@@ -20,37 +14,6 @@ static void logger(fmi3InstanceEnvironment environment, fmi3Status status, fmi3S
     if (category == NULL || message == NULL || message[0] == '\0' || status == fmi3OK || status > fmi3Error) {
         abort();
     }
-}
-
-static double any_real(void)
-{
-    static const double odd[] = {0.0, -0.0, 1.0, -1.0, 1e-300, 5e-324, 1e18, 1e300, -1e300, NAN, HUGE_VAL};
-    return pick(4) == 0 ? odd[pick(11)] : ((double)pick(2000001) - 1e6) * pow(10.0, (double)pick(16) - 12.0);
-}
-
-/* Mostly a value that the variable takes, so that calls get past the checks. */
-static double fitting_real(unsigned reference)
-{
-    double low, high;
-    const unsigned place = reference - FIRST_REFERENCE;
-    if (place >= VARIABLES || pick(12) == 0) {
-        return any_real();
-    }
-    low = rows[place].low > -1e6 ? rows[place].low : -1e3;
-    high = rows[place].high < 1e6 ? rows[place].high : 1e3;
-    return low + (high - low) * (double)pick(1000001) * 1e-6;
-}
-
-static unsigned any_reference(Kind kind, bool setting)
-{
-    unsigned tries;
-    for (tries = 0; tries < 100 && pick(40) != 0; tries++) {
-        unsigned place = pick(VARIABLES);
-        if (rows[place].kind == kind && (!setting || rows[place].causality <= INPUT)) {
-            return place + FIRST_REFERENCE;
-        }
-    }
-    return pick(2) ? pick(VARIABLES + 3) : 4294967295U;
 }
 
 static void values(fmi3Instance instance)
@@ -80,31 +43,14 @@ static void values(fmi3Instance instance)
     }
 }
 
-/* Bytes of a true state, damaged or not, or any bytes at all, into a handle. */
 static void bytes(fmi3Instance instance, fmi3FMUState *saved)
 {
-    uint8_t content[STATE_SIZE + 64];
-    size_t i, size = pick(4) ? STATE_SIZE : pick((unsigned)sizeof content);
-    for (i = 0; i < size; i++) {
-        content[i] = (uint8_t)pick(256);
-    }
+    uint8_t content[ROOM];
+    size_t size = any_bytes(content);
     if (*saved != NULL && pick(3) != 0 && fmi3SerializeFMUState(instance, *saved, content, size) == fmi3OK) {
-        unsigned damage = pick(4);
-        while (damage-- > 0) {
-            content[pick(STATE_SIZE)] ^= (uint8_t)(1 << pick(8));
-        }
-        if (pick(3) == 0) { /* a checksum that fits lets damage pass on to the other checks */
-            Stream stream = {content + STATE_SIZE - 8, true};
-            memcpy(content, LAYOUT, 8);
-            memcpy(content + 8, MODEL_TOKEN, TOKEN_SIZE);
-            (void)fmu_pass_bits(&stream, fmu_checksum(content, STATE_SIZE - 8), 8);
-        }
+        damage(content);
     }
-    if (fmi3DeserializeFMUState(instance, pick(60) ? content : NULL, size, saved) == fmi3OK) {
-        unpacked++;
-    } else {
-        refused++;
-    }
+    count_bytes(fmi3DeserializeFMUState(instance, pick(60) ? content : NULL, size, saved) == fmi3OK);
 }
 
 static void states(fmi3Instance instance, fmi3FMUState *saved)
