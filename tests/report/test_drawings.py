@@ -10,12 +10,15 @@ from typing import Any
 
 import numpy as np
 import pytest
+from belt_loom import shape
 from browser import NARROW
 
 import loomfmu
 from loomfmu import report
 from loomfmu.components.reed_beat_up import ReedBeatUp
 from loomfmu.components.weft_insertion import WeftInsertion
+from loomfmu.cosim import reading
+from loomfmu.cosim.reading import checked
 from loomfmu.cosim.scenes import scene
 from loomfmu.physics.belt import complete_elliptic, elastica_deflection
 from loomfmu.report.drawings import sections
@@ -31,6 +34,8 @@ from loomfmu.traces import Trace
 Open = Callable[..., Any]
 SIMS = Path(__file__).parents[2] / "sims"
 ANGLES = (0.0, 37.0, 100.0, 180.0, 271.0, 359.0)  # deg
+MOTION = SIMS / "belt_motion.toml"
+MODES, ENDS = [f"mode_{number}" for number in range(1, 7)], ["guide_shape", "head_shape"]
 PAIR = ("belt", "belt_2")
 STEP = 0.011  # mm: keyframes are rounded to 0.01 mm, points to a thousandth
 
@@ -176,11 +181,45 @@ def test_the_belt_in_motion_bends_where_the_trace_has_it(
     for degrees in (105.0, 120.0, 230.0):
         seek(page, 1080.0 + degrees)
         text = page.locator("#motion-belt-belt_motion g[data-stretch]").first.get_attribute("transform")
-        _x, _y, place, bend = (float(word) for word in re.findall(r"-?[\d.]+", text))
+        _x, _y, place, drawn = (float(word) for word in re.findall(r"-?[\d.]+", text))
+        bend = drawn / times(page, "belt_motion")
         at = int(np.searchsorted(whole.shaft_angle, math.radians(1080.0 + degrees)))
         for drawn, signal in ((place, "deflection_place"), (bend, "deflection")):
             near = 1000.0 * whole[f"belt_motion.{signal}"][at - 5 : at + 6]  # keyframes are one a degree
             assert near.min() - STEP <= drawn <= near.max() + STEP
+
+
+def times(page: Any, belt: str) -> float:
+    """How many times the deflection of a belt in motion is drawn."""
+    return float(page.inner_text(f'#motion-belt-{belt} output[data-value="{belt}.magnified"]'))
+
+
+def test_the_belt_in_motion_is_drawn_as_it_bends(tmp_path: Path, opened: Open) -> None:
+    run = loomfmu.run(reading.drawn(checked(MOTION, {}, "native")), output=tmp_path / "run.h5")
+    page, trace = opened(run.report()), run.trace
+    for degrees in (100.0, 137.0, 170.0):
+        seek(page, degrees)
+        at = int(np.searchsorted(trace.shaft_angle, math.radians(degrees) - 1e-9))
+        deflection, place = (1000.0 * trace[f"belt_motion.deflection{each}"][at] for each in ("", "_place"))
+        modes, ends = ([trace[f"belt_motion.{each}"][at] for each in names] for names in (MODES, ENDS))
+        along = 1000.0 * (trace["belt_motion.free_length"] - trace["belt_motion.shortening"])[at]
+        x, y = np.array(points(page, "belt-belt_motion", "belt[data-curve]")).T
+        # from the guide, with eight amplitudes that are each rounded to 1e-4 mm, as the places are
+        np.testing.assert_allclose(x, np.linspace(0.0, along, len(x)), atol=STEP)
+        exact = 1000.0 * shape(modes, ends, np.linspace(1.0, 0.0, len(x)))
+        np.testing.assert_allclose(y / times(page, "belt_motion"), exact, atol=4.1e-4)
+        worst = int(np.argmax(np.abs(y)))  # between two points it is flat: within 1 % of the deflection
+        assert abs(y[worst]) / times(page, "belt_motion") == pytest.approx(deflection, rel=1e-2)
+        assert x[worst] == pytest.approx(place, abs=along / len(x))
+
+
+def test_the_shape_of_a_belt_is_recorded_only_for_a_drawing_or_by_its_names(tmp_path: Path) -> None:
+    plain = checked(MOTION, {}, "native")
+    more = [f"belt_motion.{each}" for each in (*MODES, *ENDS)]
+    assert reading.drawn(plain).record == [*plain.record, *more] and not {*more} & {*plain.record}
+    named = scene.parse(plain.text.replace('"belt_motion.*"', '"belt_motion.mode_*"'), "named", {}, SIMS)
+    trace = loomfmu.run(named, output=tmp_path / "named.h5").trace
+    assert [name for name in more if name in trace] == more[:6]
 
 
 # ---- the weft
@@ -327,9 +366,9 @@ def test_drawings_do_not_hang_on_names(tmp_path: Path) -> None:
 
 
 def test_the_belt_in_motion_has_a_drawing_of_its_own(tmp_path: Path) -> None:
-    html = made(loomfmu.run(SIMS / "belt_motion.toml", output=tmp_path / "run.h5").trace).html
+    html = made(loomfmu.run(MOTION, output=tmp_path / "run.h5").trace).html
     assert '<figure id="motion-belt-belt_motion"' in html
-    assert "at its recorded place" in html
+    assert "loomfmu run --report records its whole shape" in html
 
 
 def test_a_linkage_that_does_not_give_the_recorded_travel_is_not_drawn(

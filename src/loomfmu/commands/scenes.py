@@ -56,13 +56,15 @@ if TYPE_CHECKING:
 def run(options: argparse.Namespace) -> int:
     """Simulate a scene, record a trace and check the claims."""
     from ..cosim.master.guards import supervised
-    from ..cosim.reading import checked
+    from ..cosim.reading import checked, drawn
 
     if options.report:
         from .. import report
 
         report.check()  # before the run, not after it
     options.scene = checked(options.scene, pairs(options.overrides), "live" if options.live else "native")
+    if options.report:
+        options.scene = drawn(options.scene)
     if unprotected := options.scene.unprotected:
         return supervised(lambda: status_of(lambda: _run_here(options), options), unprotected)
     return _run_here(options)

@@ -6,7 +6,7 @@ from math import fabs, inf, sqrt
 from typing import ClassVar
 
 from ..declaring.arrays import array
-from ..declaring.declarations import at_step_end, input_, output, parameter, state
+from ..declaring.declarations import at_step_end, auxiliary, input_, output, parameter, state
 from ..declaring.variables import Component, Problem, Terminal
 from ..physics.belt import LARGEST_BEND
 from ..physics.belt_bending import LEAST_SQUARE, bent_belt
@@ -97,6 +97,7 @@ class BeltDynamics(Component):
     longest_turn: ClassVar[float] = inf
     # works, energies and loads: 3e-4 as a rule, 3.6e-3 at most, between 35 and 17,000 steps in a revolution
     scatter: ClassVar[float] = 5e-3
+    drawn: ClassVar[tuple[str, ...]] = (*(f"mode_{n}" for n in range(1, 7)), "guide_shape", "head_shape")
 
     bending_stiffness: float = parameter(
         BENDING_STIFFNESS, 0.25, "Bending stiffness EI of the belt", source="belt_#.bending_stiffness"
@@ -305,6 +306,8 @@ class BeltDynamics(Component):
     lost: bool = state("1", "It is held because its motion could not be followed", start=False)
     mode: Sequence[float] = array(state("m", f"Amplitude of the {each} mode") for each in NUMBERS)
     mode_rate: Sequence[float] = array(state("m/s", f"Rate of the {each} mode") for each in NUMBERS)
+    guide_shape: float = auxiliary("m", "Amplitude of the end shape at the guide")
+    head_shape: float = auxiliary("m", "Amplitude of the end shape at the head")
     sampled_travel: float = state("m", "Travel at the last sample of the inputs")
     sampled_velocity: float = state("m/s", "Velocity at the last sample")
     sampled_acceleration: float = state("m/s2", "Acceleration at the last sample")
@@ -442,6 +445,8 @@ class BeltDynamics(Component):
         self.held = False
         self.lost = False
         self.mode = [0.0] * 6
+        self.guide_shape = 0.0
+        self.head_shape = 0.0
         self.deflection = 0.0
         self.deflection_place = 0.0
         self.bending_strain = 0.0
@@ -607,6 +612,8 @@ class BeltDynamics(Component):
         before = self.deflection
         before_rate = self.deflection_rate
         ends = ends_at(belt, at, self.guide_contact, q, v)
+        self.guide_shape = ends.guide
+        self.head_shape = ends.head
         shape = end_shape(ends.guide, ends.head, q)
         place, farthest, steepest, bend = shape_extremes(at.length, shape, ends.guide, ends.head)
         shape = end_shape(ends.guide_rate, ends.head_rate, v)

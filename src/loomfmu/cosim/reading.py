@@ -42,6 +42,17 @@ def requested(scene: str | Path | Scene, overrides: dict[str, Any] | None, flavo
         raise LoomfmuError(f"{place}{error}") from None
 
 
+def drawn(scene: Scene) -> Scene:
+    """A scene that also records what only drawings of its mechanisms need, of those that it records."""
+    instances, record = dict(scene.instances), dict.fromkeys(scene.record)
+    for name in dict.fromkeys(signal.partition(".")[0] for signal in scene.record):
+        fmu = instances[name].fmu
+        if fmu.component and fmu.component.drawn:
+            instances[name] = replace(instances[name], fmu=fmu.with_outputs(fmu.component.drawn))
+            record |= {f"{name}.{each}": None for each in fmu.component.drawn}
+    return replace(scene, instances=instances, record=[*record])
+
+
 def protected(scene: Scene) -> Scene:
     """A scene whose FMUs cannot end this process, for what must come to an end. Raises LoomfmuError."""
     if AVAILABLE and scene.unprotected:

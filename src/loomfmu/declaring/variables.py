@@ -230,6 +230,8 @@ class Component:
     longest_turn: ClassVar[float] = 0.0
     # of a shaft: the parameters that are 0 while it turns evenly; none of one that never does
     unsteady: ClassVar[tuple[str, ...]] = ()
+    # what it keeps that drawings of it need: it is recorded only where a run is drawn, or where it is named
+    drawn: ClassVar[tuple[str, ...]] = ()
     # the inputs that each output depends on, of a component whose source does not show them
     needs: ClassVar[Mapping[str, frozenset[str]]] = {}
     # whether a native FMU has derivatives of its outputs

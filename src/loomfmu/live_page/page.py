@@ -15,7 +15,7 @@ from typing import Any
 
 from .. import units
 from ..cosim.master.steppers import SOURCE
-from ..cosim.reading import checked
+from ..cosim.reading import checked, drawn
 from ..cosim.recorded import usual_path
 from ..cosim.run import run
 from ..cosim.scenes.headings import heading
@@ -90,7 +90,7 @@ def write(
     varied = knobs(loaded, [name for name, (_, each) in rows.items() if each.settable], vary)
     with tempfile.TemporaryDirectory(prefix="loomfmu-") as directory:
         stepping, judging = _compiled(whole)
-        started = run(loaded, output=Path(directory) / "start.h5", progress=True)
+        started = run(drawn(loaded), output=Path(directory) / "start.h5", progress=True)
         with started.trace as trace:
             subject = Subject([trace], live=True)
             data = _data(loaded, subject, rows, varied) | _stepping(whole, trace, rows)

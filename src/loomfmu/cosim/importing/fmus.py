@@ -141,7 +141,10 @@ class Fmu:
         """
         if self.component is None or not self.built:
             return self
-        return of_class(self.component, "live" if flavour == "native" and self.no_native else flavour)
+        made = of_class(self.component, "live" if flavour == "native" and self.no_native else flavour)
+        if made.flavour == self.flavour:
+            return self
+        return replace(made, ports=self.ports) if any(port.inner for port in self.ports.values()) else made
 
     @property
     def no_native(self) -> str:
@@ -248,8 +251,10 @@ class Fmu:
 
     @property
     def inner(self) -> list[str]:
-        """The names of locals that a scene may record; of ours, what is of use to others is an output."""
-        known = () if self.component or self.ours else self.ports.values()
+        """The names of locals that a scene may record; of ours, those that drawings need."""
+        if self.component:
+            return [*self.component.drawn]
+        known = () if self.ours else self.ports.values()
         return [port.name for port in known if port.causality == "local" and port.name not in SHARED]
 
     def with_outputs(self, names: Iterable[str]) -> "Fmu":

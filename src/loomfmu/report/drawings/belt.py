@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from ...physics.belt import LARGEST_BEND, MOST_BENT, complete_elliptic
 from ..occasions import instances
 from ..rules import TABLE, Rule, mm
+from .moving import MOVING, Motion, motion_of
 from .sketch import Figure, Sketch, Value, title
 from .tracks import FINEST, Tracks
 
@@ -16,9 +17,6 @@ Floats = NDArray[np.float64]
 FINER = FINEST  # a belt buckles within a degree
 POINTS = 33  # of a buckled belt
 SHAPES = 41  # between a straight belt and the one that is bent most
-MOVING = "BeltDynamics"  # the FMU of a belt whose deflection is integrated
-FLAT = 1e-2  # mm: nothing of less width or height is drawn at all
-QUARTER = [(round(x, 4), round(sin(0.5 * pi * x), 4)) for x in np.linspace(0.0, 1.0, 17)]  # of a wave
 HEAD = 150.0  # mm: length drawn of the head, of which a trace knows only the length with its rigid section
 
 
@@ -84,9 +82,7 @@ class Belt:
     pressed: str  # empty if its compression is not recorded
     idle: float
     head: float
-    moving: (
-        str  # track of its deflection's place, if that is of a motion, not of a load that lasts; else empty
-    )
+    motion: Motion | None  # None where a load that lasts bends it
 
 
 def tracked(tracks: Tracks, name: str) -> Belt:
@@ -96,12 +92,9 @@ def tracked(tracks: Tracks, name: str) -> Belt:
     force = f"{name}.{'compression' if moving else 'axial_force'}"
     free, bent = (f"{name}.{each}" for each in ("free_length", "deflection"))
     idle, head = (1000.0 * tracks.parameter(f"{name}.{each}") for each in ("idle_travel", "head_length"))
-    slope, tail, place = "", mm(free), ""
+    slope, tail = "", mm(free)
     if moving:
         tail = mm(["-", free, f"{name}.shortening"])
-        place = tracks.add(f"{name}.place", ["max", mm(f"{name}.deflection_place"), FLAT])
-        tracks.add(f"{name}.bend", ["max", mm(bent), FLAT])
-        tracks.add(f"{name}.rest", ["min", ["-", f"{name}.place", tail], -FLAT])
     elif live or tracks.values(["highest", bent]) > 0.0:
         known = f"{name}.margin" in trace  # of the load
         load: Rule = ["-", 1.0, f"{name}.margin"] if known else 0.0
@@ -123,7 +116,7 @@ def tracked(tracks: Tracks, name: str) -> Belt:
         pressed,
         idle,
         head,
-        place,
+        motion_of(tracks, name, tail) if moving else None,
     )
 
 
@@ -169,38 +162,42 @@ def through_guide(sketch: Sketch, belt: Belt, radius: float, half: float) -> Non
 
 def between(tracks: Tracks, belt: Belt) -> Figure:
     """The free section between guide and head, large enough to see it bend."""
-    live = tracks.subject.live
-    free, bent = (tracks.values(mm(f"{belt.name}.{each}")) for each in ("free_length", "deflection"))
-    at_risk = np.asarray(bent > 0.0)
-    if belt.pressed and (belt.moving or not np.any(at_risk)):
-        at_risk = tracks.values(belt.pressed) > 0.0
-    longest = float(np.max(free[at_risk])) if np.any(at_risk) else 200.0
-    right = max(200.0, 1.6 * longest)
-    top = LARGEST_BEND * longest if live else 1.15 * float(np.max(bent))
-    sketch = Sketch(tracks, -0.2 * right, -30.0, right, max(60.0, top))
-    for y in (-9.0, 9.0):
+    motion, live = belt.motion, tracks.subject.live
+    right, bottom, top = motion.box if motion else _box(tracks, belt)
+    sketch = Sketch(tracks, -0.2 * right, bottom, right, top)
+    half = max(9.0, 0.016 * right)
+    for y in (-half, half):
         sketch.line((sketch.left, y), (0.0, y), role="rail")
     sketch.line((0.0, 0.0), (right, 0.0), role="path")
-    _belt(sketch, belt, 2.0 * sketch.left, 9.0)
-    sketch.label(0.0, 9.0, "guide", "end", (-4.0, -6.0))
+    _belt(sketch, belt, 2.0 * sketch.left, half)
+    sketch.label(0.0, half, "guide", "end", (-4.0, -6.0))
     shape = (
-        "The belt has its recorded largest deflection at its recorded place, between quarter waves; it is"
-        " drawn bent upwards, and the head lags by the recorded shortening. Further waves are not recorded."
-        if belt.moving
-        else "The belt is the exact elastica of the recorded deflection, pinned at both ends; it is drawn"
-        " bent upwards, and the head lags by the length that the bend takes up."
+        "The belt is the exact elastica of the recorded deflection, pinned at both ends; it is drawn bent"
+        " upwards, and the head lags by the length that the bend takes up."
         if belt.slope
         else "The belt stays straight in this run."
     )
-    does = f", which {'buckles' if belt.slope else 'stays straight'} in this run."
-    does = "." if live or belt.moving else does
+    note = motion.note if motion else f"{shape} The deflection is not exaggerated."
+    does = "" if live or motion else f", which {'buckles' if belt.slope else 'stays straight'} in this run"
+    values = [Value("free length", belt.outside, "mm"), Value("deflection", belt.deflection, "mm")]
     return sketch.figure(
         f"belt-{belt.name}",
         title("Belt between guide and head", belt.name, "belt"),
-        f"The free section of the belt between its guide and the rapier head{does}",
-        [Value("free length", belt.outside, "mm"), Value("deflection", belt.deflection, "mm")],
-        f"{shape} The deflection is not exaggerated. Dark orange: outside the guide and compressed.",
+        f"The free section of the belt between its guide and the rapier head{does}.",
+        [*values, Value("drawn", motion.magnified, "times as large")] if motion else values,
+        f"{note} Dark orange: outside the guide and compressed.",
     )
+
+
+def _box(tracks: Tracks, belt: Belt) -> tuple[float, float, float]:
+    """Right, bottom and top of the drawing of a belt that a load bends which lasts [mm]."""
+    free, bent = (tracks.values(mm(f"{belt.name}.{each}")) for each in ("free_length", "deflection"))
+    at_risk = np.asarray(bent > 0.0)
+    if belt.pressed and not np.any(at_risk):
+        at_risk = tracks.values(belt.pressed) > 0.0
+    longest = float(np.max(free[at_risk])) if np.any(at_risk) else 200.0
+    top = LARGEST_BEND * longest if tracks.subject.live else 1.15 * float(np.max(bent))
+    return max(200.0, 1.6 * longest), -30.0, max(60.0, top)
 
 
 def _belt(sketch: Sketch, belt: Belt, start: float, half: float) -> None:
@@ -220,11 +217,8 @@ def _belt(sketch: Sketch, belt: Belt, start: float, half: float) -> None:
 
 
 def _free(sketch: Sketch, belt: Belt, role: str) -> None:
-    if belt.moving:
-        bend = f"{belt.name}.bend"
-        for at, wide in ((0.0, belt.moving), (belt.tail, f"{belt.name}.rest")):
-            with sketch.group(shown=belt.outside), sketch.group(stretch=(at, 0.0, wide, bend)):
-                sketch.line(*QUARTER, role=role)
+    if belt.motion:
+        belt.motion.draw(sketch, belt.outside, belt.tail, role)
         return
     if not belt.slope:
         sketch.line((0.0, 0.0), (belt.outside, 0.0), role=role)
@@ -235,7 +229,7 @@ def _free(sketch: Sketch, belt: Belt, role: str) -> None:
     sketch.bow(belt.slope, belt.outside, (0.0, 0.0), shape, role)
 
 
-def shapes(tracks: Tracks) -> dict[str, object] | None:
+def bows(tracks: Tracks) -> dict[str, object] | None:
     """Elasticas up to the largest slope that occurs, for the page; None if no belt buckles."""
     largest = [_steepest(tracks, name) for name in tracks.made if name.endswith(".slope")]
     if not largest:

@@ -6,9 +6,10 @@ from math import degrees, floor
 from ..occasions import instances
 from ..section import COARSEST, TURN, Section, Subject
 from ..templates import template
-from .belt import MOVING, between, shapes, tracked
+from .belt import between, bows, tracked
 from .drive import drive, figure
 from .front import pairs, transfer, view
+from .moving import MOVING, modes
 from .reed import beat_up
 from .side import shed_of, views
 from .sketch import Figure
@@ -46,7 +47,10 @@ def sections(subject: Subject) -> list[Section]:
         )
         for number, (name, _title, figures) in enumerate(parts)
     ]
-    moved = (tracks.rules() if subject.live else tracks.data()) | {"bows": shapes(tracks)}
+    moved = (tracks.rules() if subject.live else tracks.data()) | {
+        "bows": bows(tracks),
+        "modes": modes(tracks),
+    }
     made = [Section(name, title, html) for (name, title, _figures), html in zip(parts, pages, strict=True)]
     return [*made[:-1], replace(made[-1], scripts=("motion.js",), data=moved)]
 

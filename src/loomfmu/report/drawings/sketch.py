@@ -5,8 +5,12 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from html import escape
 
+import numpy as np
+from numpy.typing import NDArray
+
 from .tracks import Tracks
 
+Shapes = NDArray[np.float64]  # heights at equal distances along, a row for each
 Coordinate = float | str  # mm, or the name of a track in mm
 Point = tuple[Coordinate, Coordinate]
 WIDTH = 440.0  # px of a drawing beside others, so that labels are of one size
@@ -108,6 +112,14 @@ class Sketch:
         self.parts.append(
             f'<polyline class="{role}" points="{shape}" data-bow="{slope} {length} {x:g} {y:g}"/>'
         )
+
+    def curve(self, length: str, times: str, amplitudes: Sequence[str], basis: Shapes, role: str) -> None:
+        """A line along a length; its height is a number of times the sum of shapes with their amplitudes."""
+        along = np.linspace(0.0, self.tracks.at(length), basis.shape[1])
+        heights = self.tracks.at(times) * np.array([self.tracks.at(each) for each in amplitudes]) @ basis
+        shape = " ".join(f"{x:.3f} {y:.3f}" for x, y in zip(along, heights, strict=True))
+        moving = _moving("curve", (length, times, *amplitudes))
+        self.parts.append(f'<polyline class="{role}" points="{shape}"{moving}/>')
 
     @contextmanager
     def mirrored(self, x: float) -> Iterator[None]:

@@ -1,6 +1,6 @@
 // Moves the parts of the drawings to where the keyframes have them at the cursor's position, or the run of the page.
 (() => {
-  const { first, span, tracks, bows, fixed } = loomfmu.data(document.getElementById("motion") ? "motion" : "loom"), { live } = loomfmu;
+  const { first, span, tracks, bows, modes, fixed } = loomfmu.data(document.getElementById("motion") ? "motion" : "loom"), { live } = loomfmu;
   const roots = [...document.querySelectorAll(".motion")], missing = document.getElementById("motion-missing");
   for (const track of Object.values(tracks))
     if (track.frames) track.frames = track.frames.map(steps => { let sum = 0; return steps.map(step => sum += step); });
@@ -32,6 +32,12 @@
     return along.map(([across, up]) => `${(x + size * across).toFixed(3)} ${(y + size * up).toFixed(3)}`).join(" ");
   }
 
+  /* Points along a length: a number of times the sum of the shapes of `modes`, each with its amplitude. */
+  function curve(length, times, ...amplitudes) {
+    const last = modes[0].length - 1, height = point => amplitudes.reduce((sum, each, row) => sum + each * modes[row][point], 0);
+    return modes[0].map((_, point) => `${(length * point / last).toFixed(3)} ${(times * height(point)).toFixed(3)}`).join(" ");
+  }
+
   const moves = [
     ...followers("points", (element, at) => element.setAttribute("points", at.map(each => each.toFixed(3)).join(" "))),
     ...followers("at", (element, [x, y]) => { element.setAttribute("cx", x); element.setAttribute("cy", y); }),
@@ -40,6 +46,7 @@
     ...followers("turn", (element, [angle, x, y]) => element.setAttribute("transform", `rotate(${angle} ${x} ${y})`)),
     ...followers("shown", (element, [amount]) => element.toggleAttribute("hidden", !(amount > 0))),
     ...followers("bow", (element, at) => element.setAttribute("points", bow(...at))),
+    ...followers("curve", (element, at) => element.setAttribute("points", curve(...at))),
     ...followers("value", (element, [amount]) => { element.textContent = amount.toFixed(1); }),
   ];
   function draw(position) {
