@@ -29,3 +29,14 @@ def test_the_outer_face_of_a_wrapped_belt_is_longer_than_its_middle(thickness, d
     assert wrap.initialize(0.0) == 0
     face, middle = (MP.pi * (diameter + layer * MP.mpf(thickness)) for layer in (2, 1))  # of a full turn
     assert wrap.bending_strain == pytest.approx(float((face - middle) / middle), rel=1e-15)
+
+
+@settings(max_examples=100)
+@given(st.floats(1e-6, 0.1), st.floats(1e-4, 1.0), st.floats(1e-3, 10.0), st.floats(1e-3, 1e3))
+def test_the_stress_of_a_wrapped_belt_bends_it_to_its_wheel(thickness, width, diameter, stiffness):
+    wrap = BeltWrap(thickness=thickness, width=width, wheel_diameter=diameter, bending_stiffness=stiffness)
+    assert wrap.initialize(0.0) == 0
+    t, b, end = MP.mpf(thickness), MP.mpf(width), MP.mpf(wrap.bending_stress)
+    # the stress grows evenly from the middle to the faces; its moment is EI over the radius of the middle
+    moment = 2 * MP.quad(lambda y: b * end * y / (t / 2) * y, [0, t / 2])
+    assert float(moment) == pytest.approx(float(2 * MP.mpf(stiffness) / (diameter + t)), rel=2e-15)

@@ -6,8 +6,8 @@ from typing import ClassVar
 
 from ..declaring.declarations import input_, output, parameter
 from ..declaring.variables import NOTHING, PUBLISHED, Component
-from ..physics.belt_wrap import bending_moment, bending_strain, lever_arm, restraint_load
-from .quantities import BENDING_STIFFNESS, LENGTH, THICKNESS, TURN, WHEEL_DIAMETER
+from ..physics.belt_wrap import bending_moment, bending_strain, bending_stress, lever_arm, restraint_load
+from .quantities import BENDING_STIFFNESS, LENGTH, STRESS, THICKNESS, TURN, WHEEL_DIAMETER
 from .shared_declarations import found_once
 
 
@@ -22,7 +22,10 @@ class BeltWrap(Component):
     bending_stiffness: float = parameter(BENDING_STIFFNESS, 0.25, "Bending stiffness EI of the belt")
     wheel_diameter: float = parameter(WHEEL_DIAMETER, 0.397, "Bottom diameter of the rapier wheel")
     thickness: float = parameter(
-        THICKNESS, 1.35e-3, "Thickness of the belt, for its strain (published: 30 mm x 1.35 mm)"
+        THICKNESS, 1.35e-3, "Thickness of the belt, for its strain and stress (published)"
+    )
+    width: float = parameter(
+        LENGTH.within(1e-4, 1.0, nominal=0.01), 0.030, "Width of the belt, for its stress (published)"
     )
     wrap_angle: float = parameter(TURN, pi, "Angle of the belt on the wheel, for information only: no effect")
     block_clearance: float = input_(
@@ -36,11 +39,15 @@ class BeltWrap(Component):
     )
     bending_moment: float = found_once("N.m", "Moment that bends the belt onto the wheel")
     bending_strain: float = found_once("1", "Strain of the belt's outer face on the wheel", nominal=0.01)
+    bending_stress: float = found_once(STRESS, "Stress in the belt's outer face on the wheel, by its strain")
 
     def initialize(self, time: float) -> int:
         """Bend the belt to the wheel."""
         self.bending_moment = bending_moment(self.bending_stiffness, self.wheel_diameter)
         self.bending_strain = bending_strain(self.thickness, self.wheel_diameter)
+        self.bending_stress = bending_stress(
+            self.bending_stiffness, self.width, self.thickness, self.wheel_diameter
+        )
         return self.step(time, 0.0)
 
     def step(self, time: float, step_size: float) -> int:

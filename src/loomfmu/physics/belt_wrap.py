@@ -71,3 +71,19 @@ def bending_strain(thickness: float, diameter: float) -> float:
     0.339
     """
     return thickness / (diameter + thickness)
+
+
+def bending_stress(stiffness: float, width: float, thickness: float, diameter: float) -> float:
+    """Stress in the outer face of a belt of a rectangular section on its wheel [Pa], `12 EI / (b t^3) e`.
+
+    Its modulus follows from its bending stiffness; `e` is the `bending_strain`.
+
+    Args:
+        width: b of the belt [m]
+        thickness: t [m]
+
+    >>> round(1e-6 * bending_stress(0.25, 0.030, 1.35e-3, 0.397), 1)  # MPa
+    137.7
+    """
+    modulus = 12.0 * stiffness / (width * thickness * thickness * thickness)
+    return modulus * bending_strain(thickness, diameter)
