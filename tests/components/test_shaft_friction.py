@@ -1,4 +1,4 @@
-"""DrivenShaft with friction: against an ODE solver through stops and releases, at rest, energy, mirrored."""
+"""DrivenShaft with friction and a motor by points: against an ODE solver, at rest, energy, mirrored."""
 
 from itertools import pairwise
 from math import pi
@@ -128,3 +128,76 @@ def test_a_turn_of_the_speed_far_from_rest_keeps_the_stated_work():
     shaft.torque_1, shaft.work_1 = -100.0, 1.0  # slower first, then faster again
     assert shaft.step(0.0, 0.01) == 0
     assert shaft.load_work - shaft.other_work == pytest.approx(1.0, rel=1e-12)  # roundings of some 40 J
+
+
+# an induction motor: from rest over pull-up and breakdown to its no-load speed, and as a brake beyond it
+INDUCTION = {
+    "speed": 44.0,
+    "torque_slope": 0.0,
+    "motor_points": 5,
+    "inertia": 2.0,
+} | {
+    f"point_{what}_{number}": value
+    for number, row in enumerate([(0.0, 90.0), (10.0, 70.0), (36.0, 160.0), (40.0, 120.0), (44.0, 0.0)], 1)
+    for what, value in zip(("speed", "torque"), row, strict=True)
+}
+
+
+@pytest.mark.parametrize(("steps", "dry", "viscous"), [(9, 0.0, 0.0), (40, 8.0, 0.2), (333, 0.0, 1.0)])
+def test_a_start_over_the_breakdown_torque_against_a_solver(steps, dry, viscous):
+    # whatever the step: load on a straight line, from light to what pulls the motor back below its breakdown
+    step = 4.5 / steps
+    ramp = [5.0 + 40.0 * n * step for n in range(steps + 1)]
+    speeds, torques = ([INDUCTION[f"point_{what}_{n}"] for n in range(1, 6)] for what in ("speed", "torque"))
+    seen = run(ramp, step, start_at_speed=False, dry_friction=dry, viscous_friction=viscous, **INDUCTION)
+
+    def rates(t, y):
+        motor = np.interp(y[1], speeds, torques)
+        if y[1] > 44.0:
+            motor = -30.0 * (y[1] - 44.0)
+        rubbed = viscous * y[1] + dry
+        return [y[1], (motor - rubbed - 5.0 - 40.0 * t) / 2.0, motor * y[1], rubbed * y[1]]
+
+    times = step * np.arange(1, steps + 1)
+
+    def stop(t, y):
+        return y[1] if t > 0.1 else 1.0
+
+    stop.terminal = True
+    exact = solve_ivp(
+        rates, (0.0, 4.5), [0.0] * 4, "DOP853", times, events=stop, rtol=1e-9, atol=1e-9, max_step=0.01
+    ).y.T
+    shown = np.array([(s["angle"], s["velocity"], s["motor_work"]) for s in seen])
+    assert 36.0 < max(shown[:, 1]) < 44.0
+    # the solver's tolerance and its steps over the points
+    assert shown[: len(exact)] == pytest.approx(exact[:, :3], rel=1e-6, abs=1e-5)
+    balance = [s["motor_work"] - s["load_work"] - s["kinetic_energy"] for s in seen]
+    assert balance == pytest.approx([0.0] * steps, abs=1e-9)  # roundings of some thousand joules
+
+
+def test_steps_of_any_length_pass_the_points_alike():
+    whole = run([30.0] * 2, 1.5, start_at_speed=False, viscous_friction=1.0, **INDUCTION)[-1]
+    pieces = run([30.0] * 1001, 1.5e-3, start_at_speed=False, viscous_friction=1.0, **INDUCTION)[-1]
+    for name, value in whole.items():
+        assert value == pytest.approx(pieces[name], rel=1e-10, abs=1e-8), name  # a thousand sums
+
+
+def test_a_motor_by_points_backwards_is_the_mirror_of_forwards():
+    loads = [30.0, 60.0, 250.0, 150.0, 0.0, -80.0]
+    forwards = run(loads, 0.1, dry_friction=15.0, **INDUCTION)
+    backwards = run([-each for each in loads], 0.1, dry_friction=15.0, **INDUCTION | {"speed": -44.0})
+    for there, back in zip(forwards, backwards, strict=True):
+        assert [there[name] for name in BOTH_WAYS] == [-back[name] for name in BOTH_WAYS]
+        assert [there[name] for name in BOOKS] == [back[name] for name in BOOKS]
+
+
+def test_two_points_on_the_line_are_the_line():
+    loads = [0.0, 50.0, 120.0, -30.0]
+    given = {"motor_points": 2, "point_speed_2": 40.0, "point_torque_1": 1600.0}
+    for points, line in zip(run(loads, speed=40.0, **given), run(loads, speed=40.0), strict=True):
+        assert points == pytest.approx(line, rel=1e-13, abs=1e-11)
+
+
+@pytest.mark.parametrize("given", [{"motor_points": 1}, {"motor_points": 3, "point_speed_2": 5.0}])
+def test_points_that_do_not_rise_are_refused(given):
+    assert DrivenShaft(**given).initialize(0.0) == 1

@@ -34,7 +34,7 @@ def driven_motion(
         rise, bulge: of the load over the step, dT and B [N m]
         duration: of the step, h [s]
         inertia: J [kg m2], positive
-        slope: of the motor's torque line, k [N m s/rad], not negative
+        slope: of the motor's torque line, k [N m s/rad]; where it is negative z is at least -3
 
     Returns:
         change of velocity [rad/s], mean of the velocity less that at the start, mean of (1 - u) times the

@@ -84,7 +84,7 @@ def fading(decay: float) -> tuple[float, float, float, float, float, float, floa
     """`exp(-z)` and the moments of a fading memory, `I_k = integral of exp(-z (1 - u)) u^k`, u from 0 to 1.
 
     `z I_k = 1 - k I_(k-1)`, upwards from I_0 for z >= 3, downwards from a series for I_6 below, so that the
-    rounding of one moment does not grow in the next. z is not negative.
+    rounding of one moment does not grow in the next. z is at least -3.
 
     Returns:
         exp(-z), I_0 .. I_6
