@@ -51,6 +51,7 @@ class FiniteElements:
     guided: bool = False  # the head cannot turn
     clearance: float | None = None  # between belt and guide; None: the belt turns freely
     guide: float = 0.05  # length over which the guide holds the belt
+    gravity: float = 0.0  # to the side of the bow
     offset: float = 0.0  # of the guide's exit from the head's line, for the inertia of a growing chord
 
     def __post_init__(self):
@@ -101,7 +102,8 @@ class FiniteElements:
         if not self.bent:
             stiff = stiff + self.stiffness * self.n2.T @ (w * self.n2) / length**4
         turning = 2.0 * s**2 * (1 - self.x) + a / length * self.x - self.drag / self.rho * s * (1 - self.x)
-        load = self.bow_load(length) - self.rho * self.offset * self.at((self.n, turning))
+        load = self.bow_load(length)
+        load = load + self.rho * self.at((self.n, self.gravity - self.offset * turning))
         stiff, load = self.inverse @ stiff / self.rho, self.inverse @ load / self.rho
         return -weigh(by_rate), -weigh(by_value) - stiff, load
 

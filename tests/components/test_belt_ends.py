@@ -438,6 +438,7 @@ def against_finite_elements(belt_class, bow_of, elements, **given):
         guided=belt.head_end == GUIDED,
         clearance=belt.guide_clearance if belt.guide_end == PLAY else None,
         guide=belt.guide_length,
+        gravity=belt.gravity,
         offset=belt.guide_offset,
     )
     rtol = 1e-6 if elements < 10 else 1e-7
@@ -462,6 +463,7 @@ OFF = {"guide_end": PLAY, "guide_offset": 0.15e-3}
     [  # six elements are off by 2e-3, ten by 5e-4; stopped by the guide, they lose some of their motion
         (SPAN, {}, 6, 1e-3, 5e-4),
         (BELT, {}, 6, 1e-3, 5e-4),
+        (BELT, {"gravity": -60.0}, 6, 1e-3, 5e-4),
         # ten elements show that the farthest deflection is known to 1e-4
         pytest.param(SPAN, {}, 10, 2.5e-4, 1e-4, marks=pytest.mark.slow),
         pytest.param(BELT, {}, 10, 2.5e-4, 1e-4, marks=pytest.mark.slow),
@@ -471,6 +473,7 @@ OFF = {"guide_end": PLAY, "guide_offset": 0.15e-3}
         (BELT, {"guide_offset": 0.15e-3}, 6, 1.2e-3, 1e-3),
         pytest.param(BELT, {"guide_offset": -0.15e-3}, 10, 4e-4, 2e-4, marks=pytest.mark.slow),
         pytest.param(SPAN, OFF, 10, 8e-3, 8e-3, marks=pytest.mark.slow),
+        pytest.param(BELT, {"head_end": GUIDED, "gravity": 60.0}, 10, 4e-4, 2e-4, marks=pytest.mark.slow),
         pytest.param(BELT, LITTLE_PLAY, 10, 2e-3, 1e-3, marks=pytest.mark.slow),
         pytest.param(BELT, {"head_end": GUIDED}, 10, 4e-4, 2e-4, marks=pytest.mark.slow),
         pytest.param(SPAN, {"head_end": GUIDED}, 10, 6e-4, 2e-4, marks=pytest.mark.slow),

@@ -38,6 +38,7 @@ def belt(clamped, **given):
     by_default = {
         "head_mass": 0.1,
         "mass": 0.05,
+        "gravity": 40.0,
         "damping": 0.4,
         "stiffness": 0.39,
         "bow": Bow(1, BOW, BOW_LENGTH),

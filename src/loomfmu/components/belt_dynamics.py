@@ -34,6 +34,7 @@ from ..physics.numerics.extremes import highest_so_far
 from ..physics.numerics.gauss import at_stage
 from ..physics.numerics.motion import joined, joined_value, met
 from .quantities import (
+    ACCELERATION,
     BELT_MASS,
     BENDING_STIFFNESS,
     CLEARANCE,
@@ -150,6 +151,11 @@ class BeltDynamics(Component):
         0.05,
         "Mass of the belt per length (assumed: the published section is 0.061 to 0.065 if"
         " solid, less a fifth for its holes; 0.04 to 0.065)",
+    )
+    gravity: float = parameter(
+        ACCELERATION.within(-100.0, 100.0, nominal=10.0),
+        0.0,
+        "Gravity across the belt, positive towards the side of its bow at the head; 0 leaves out its weight",
     )
     damping: float = parameter(
         FREQUENCY.within(0.0, 1e4, nominal=10.0),
@@ -385,6 +391,7 @@ class BeltDynamics(Component):
         return Belt(
             self.head_mass,
             self.belt_mass,
+            self.gravity,
             2.0 * self.belt_mass * self.damping,
             self.bending_stiffness / (factor * factor),
             Bow(self.bow_of, self.bow, self.bow_length),

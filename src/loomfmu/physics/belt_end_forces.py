@@ -11,6 +11,7 @@ SQUARE_ALONG = 7.6948373537988e-4
 SQUARE_TWICE = 7.0247428329297e-4
 CROSS_ALONG = 9.793947498038e-5
 CROSS_TWICE = 8.088007123494e-5
+AREA = 24.0 / pi**4 * (1.0 + 1.0 / 81.0 + 1.0 / 625.0) - 0.25  # integral of psi, which its weight acts on
 
 
 def end_forces(drifting: float, pushed: float, thrown: float) -> list[float]:
@@ -98,6 +99,11 @@ def end_coupling(
     at_head = dot(r, q) + dot(s, v)
     across = CROSS_ALONG * pushed + CROSS_TWICE * thrown
     at_guide = at_guide + (SQUARE_ALONG * pushed + SQUARE_TWICE * thrown) * guide + across * head
-    at_guide, at_head = turned_by(ends.clamped, at_guide, at_head + across * guide)
+    at_head = at_head + across * guide
+    if belt.gravity != 0.0:
+        weight = AREA * belt.mass * belt.gravity * at.length
+        at_guide = at_guide + weight
+        at_head = at_head + weight
+    at_guide, at_head = turned_by(ends.clamped, at_guide, at_head)
     moments = moment_forces(at_guide, at_head)
     return summed(-1.0, moments, f)

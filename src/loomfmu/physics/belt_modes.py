@@ -143,6 +143,16 @@ def harmonics(
     return (c2, c3, c4, c3 * c2 - s3 * s2, c3 * c3 - s3 * s3, s2, s3, s4, s3 * c2 + c3 * s2, 2.0 * c3 * s3)
 
 
+def weight_forces(weight: float) -> list[float]:
+    """Force of a weight along the belt on all modes, over the free length: `weight int sin(n pi x) dx`.
+
+    >>> [round(pi * each, 12) for each in weight_forces(1.0)]
+    [2.0, 0.0, 0.666666666667, 0.0, 0.4, 0.0]
+    """
+    share = 2.0 * weight / pi
+    return [share, 0.0, share / 3.0, 0.0, share / 5.0, 0.0]
+
+
 def bow_mode(number: int, bow: Bow, length: float, cosine: float, sine: float) -> tuple[float, float, float]:
     """Moment of the belt's own bow on a mode, over its stiffness [1/m2], and two rates by the free length.
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from .belt import weft_load
 from .belt_ends import FreeEnds, end_amplitudes
-from .belt_modes import Bow, bow_forces
+from .belt_modes import Bow, bow_forces, summed, weight_forces
 from .numerics.brackets import at_root
 from .numerics.motion import joined_rate, joined_value
 
@@ -18,13 +18,15 @@ from .numerics.motion import joined_rate, joined_value
 class Belt:
     """A rapier belt between guide and head, and how these hold it.
 
-    Masses of head and belt [kg, kg/m], damping c [N s/m2], bending stiffness B [N m2], offset of the guide's
-    exit from the head's line [m], length of the guide and clearance in it [m]; `leaning` if the belt turns
-    freely in its guide up to a slope, `guided` if the head cannot turn; the number of modes that move.
+    Masses of head and belt [kg, kg/m], gravity across the belt [m/s2], damping c [N s/m2], bending stiffness
+    B [N m2], offset of the guide's exit from the head's line [m], length of the guide and clearance in it
+    [m]; `leaning` if the belt turns freely in its guide up to a slope, `guided` if the head cannot turn; the
+    number of modes that move.
     """
 
     head_mass: float
     mass: float
+    gravity: float
     damping: float
     stiffness: float
     bow: Bow
@@ -58,7 +60,8 @@ class Path:
 class Instant:
     """An instant of a belt: free length L, V, A [m, m/s, m/s2], its load by the weft T [N], and its bow.
 
-    The bow by its moments on the modes over the stiffness, their rates by L, and its end shapes.
+    The bow, and the belt's weight with it, by moments on the modes over the stiffness, their rates by L, and
+    the bow by its end shapes.
     """
 
     length: float
@@ -122,6 +125,10 @@ def stands(path: Path) -> bool:
 def instant(belt: Belt, length: float, velocity: float, acceleration: float, tension: float) -> Instant:
     """The instant of a belt with that free length, its rates and its load."""
     moments, by_length = bow_forces(belt.bow, length)
+    if belt.gravity != 0.0:
+        weight = weight_forces(belt.mass * belt.gravity / belt.stiffness)
+        moments = summed(length, weight, moments)
+        by_length = summed(1.0, weight, by_length)
     return Instant(
         length,
         velocity,

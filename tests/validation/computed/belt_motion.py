@@ -4,6 +4,7 @@ import math
 from functools import cache
 from typing import Any, NamedTuple
 
+from loomfmu.components import BeltDynamics
 from loomfmu.cosim.prepared import Prepared
 from loomfmu.cosim.run import prepare
 from loomfmu.cosim.scenes.scene import parse
@@ -16,6 +17,7 @@ USUAL = (0.05, 0.3e-3)  # belt mass [kg/m] and bow [m]
 MASSES = (0.04, 0.065)  # kg/m, a third of the published section punched out, and all of it there
 CORNERS = tuple((mass, bow) for mass in MASSES for bow in (0.05e-3, 0.5e-3))
 STEPS = 360
+GRAVITY = 9.80665  # m/s2
 ALLOWED = 2e-3  # m, section 4.2 of the source
 LOOM = """
 steps_per_revolution = {steps}
@@ -90,6 +92,13 @@ def tilt(bow_of: str, offset: float) -> float:
     """Share by which a guide out of line changes the deflection at the static limit."""
     usual, tilted = (pushed(MACHINES[0], 1.0, bow_of, **ends) for ends in ({}, {"guide_offset": offset}))
     return tilted / usual - 1.0
+
+
+def sagging() -> float:
+    """Free length at which a straight belt at rest sags by as much as is allowed, by its weight alone [m]."""
+    stiffness = BeltDynamics().bending_stiffness / BeltDynamics().length_factor ** 2
+    weight = USUAL[0] * GRAVITY
+    return float((384.0 * stiffness * ALLOWED / (5.0 * weight)) ** 0.25)
 
 
 def worth(machine: str, bow_of: str, share: float) -> str:
