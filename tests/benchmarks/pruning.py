@@ -30,7 +30,6 @@ def measure(effort: str, notes: Notes) -> list[Table]:
         f"{WHOLE}, HDF5": (Ours, demo(), "native"),
         "all claims, in memory": (Judged, demo(judged=True), "native"),
         "the belt's margin, in memory": (Judged, belt_alone(), "native"),
-        "the belt's margin, in memory on the window grid": (Judged, belt_alone(grid="windows"), "native"),
     }
     repeats, turns = SIZES[effort]
     steps = 90 if effort == "tiny" else STEPS
@@ -65,8 +64,7 @@ def section(find: Find) -> str:
         share = shown(row[TIME] / most) if most else ""
         lines.append([row["what"], row["judged"], *cells, share, row["what is run"]])
     return parts(
-        f"The demonstration loom, native FMUs, {STEPS} steps in a revolution where they are equal. Judged in"
-        " memory, nothing runs that the claims do not need, and nothing is written. Times contain the"
-        " judging, and on the window grid the coarse runs that look for the windows.",
+        f"The demonstration loom, native FMUs, {STEPS} steps in a revolution. Judged in memory,"
+        " nothing runs that the claims do not need, and nothing is written. Times contain the judging.",
         table(heads, lines),
     )

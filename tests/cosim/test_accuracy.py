@@ -27,7 +27,7 @@ def test_the_accuracy_is_reached_with_the_fewest_steps_tried(accuracy: float) ->
         rf"chose {steps} steps in a revolution: estimated error \S+, accuracy {accuracy:g}", found.chosen
     )
     fewer = evaluate(DEMO, set=REPEAT | {"steps_per_revolution": round(steps / GROWTH)})
-    if steps > 48:
+    if steps > 63:  # the fewest that have three coarser runs
         assert any(each.error > accuracy * abs(each.bound) for each in fewer.claims)
 
 
@@ -36,9 +36,9 @@ def test_the_run_says_and_stores_what_it_chose(tmp_path: Path, capsys: pytest.Ca
     command = ["run", str(DEMO), "--set", "accuracy=1e-4", "--set", "revolutions=2", "--output", str(path)]
     assert main(command) == 0
     printed = capsys.readouterr().out
-    assert "chose 165 steps in a revolution: estimated error" in printed
+    assert "chose 63 steps in a revolution: estimated error" in printed
     trace = Trace(path)
-    assert trace.attributes["accuracy"] == 0.0001 and trace.attributes["steps_per_revolution"] == 165
+    assert trace.attributes["accuracy"] == 0.0001 and trace.attributes["steps_per_revolution"] == 63
     assert trace.verdicts == list(evaluate(DEMO, set=REPEAT | {"accuracy": 1e-4}).claims)
 
 
@@ -64,14 +64,12 @@ def test_setting_one_replaces_the_other() -> None:
     text = DEMO.read_text().replace("steps_per_revolution = 1440", "accuracy = 1e-3")
     assert parsed(text).accuracy == 1e-3
     assert parsed(text, steps_per_revolution=90).accuracy is None
-    assert parsed(DEMO.with_name("belt_alone.toml").read_text(), accuracy=1e-3).grid == "uniform"
 
 
 @pytest.mark.parametrize(
     ("given", "message"),
     [
         ({"accuracy": 1e-6, "steps_per_revolution": 90}, "accuracy and steps_per_revolution are both given"),
-        ({"accuracy": 1e-6, "grid": "windows"}, "accuracy and grid are both given"),
         ({"accuracy": 2.0}, r"accuracy = 2 is outside \[1e-12, 1\]"),
         ({"accuracy": "good"}, "accuracy = 'good' is not a number"),
         (

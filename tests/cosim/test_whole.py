@@ -530,9 +530,3 @@ def test_what_cannot_be_in_it_is_refused(tmp_path: Path) -> None:
     scene = scenes.parse(text, "twice", directory=tmp_path)
     with pytest.raises(LoomfmuError, match="two components are called Gate; rename one of them"):
         whole.export(scene, tmp_path / "twice.fmu")
-
-
-def test_a_grid_of_windows_is_not_taken_over(tmp_path: Path) -> None:
-    scene = loaded(SIMS / "belt_alone.toml", grid="windows")
-    warnings = whole.export(scene, tmp_path / "loom.fmu", ("linux64",))
-    assert warnings == ["grid = 'windows' is ignored: the FMU takes equal steps"]

@@ -10,7 +10,7 @@ from scene_texts import claim, parsed
 
 from loomfmu import LoomfmuError, judge
 from loomfmu.components import DobbyDrive
-from loomfmu.cosim.claims.judging import Question, Run
+from loomfmu.cosim.claims.judging import Run
 from loomfmu.cosim.reading import checked_claims
 from loomfmu.traces import Signals
 
@@ -135,8 +135,8 @@ def test_a_run_that_begins_exactly_on_the_level_of_a_dwell(looms: Looms) -> None
 
 
 def crossings(trace: Signals, level: float) -> list[float]:
-    """The times at which `a.x` passes a level, as a claim on the transfer takes them."""
-    return Run(trace).landings(trace, Question("transfer_speed", [], ["a.x"], [0.0, level]))
+    """The times at which `a.x` passes a level."""
+    return Run(trace).passages(trace, "a.x", level)
 
 
 def test_a_level_that_is_passed_twice_between_two_samples_is_passed_twice() -> None:

@@ -105,5 +105,7 @@ def test_an_extreme_that_equal_samples_pass_is_the_one_that_is_held():
     both = claim("above", signal="belt.margin", bound=0.5), claim("lowest_margin", bound=0.5)
     part = {"shaft__start_angle": "241 deg", "revolutions": 0.5, "steps_per_revolution": 26}
     sampled, held = verdicts(LOOM, *both, shaft__speed="600 rpm", **part)
-    assert sampled.worst == held.worst == pytest.approx(0.2254, abs=1e-3)
+    # one is the lowest value of a cubic, the other a sample beside it
+    assert sampled.worst == pytest.approx(held.worst, rel=1e-11)
+    assert held.worst == pytest.approx(0.2254, abs=1e-3)
     assert not sampled.holds

@@ -165,15 +165,14 @@ def test_names_that_cannot_be_used_are_refused(tmp_path: Path, name: str, said: 
 
 
 @pytest.mark.parametrize("flavour", ["live", "native"])
-def test_the_lowest_force_is_that_of_the_equations_on_either_grid(cam: Path, flavour: str) -> None:
+def test_the_lowest_force_is_that_of_the_equations(cam: Path, flavour: str) -> None:
     known = lowest_force()
-    for grid, steps in (("uniform", 1440), ("uniform", 360), ("windows", 1440), ("windows", 360)):
+    for steps in (1440, 360):
         (cam / "cam.toml").write_text(SCENE.format(steps=steps))
-        found = loomfmu.evaluate(cam / "cam.toml", set={"grid": grid}, flavour=flavour)
+        found = loomfmu.evaluate(cam / "cam.toml", flavour=flavour)
         # the cubic is off by h^4 F''''/384: the force has some 1e3 N and its fourth derivative by angle is
-        # 1e3 * (2 pi / 60 deg)^4 = 1.3e6; with 1 deg that is 3e-4 N, with 0.25 deg 1e-6 N; landings are exact
-        tolerance = {"windows": 1e-6}.get(grid, 3e-4 if steps == 360 else 1.3e-6)
-        assert found.claims[0].worst == pytest.approx(known, abs=tolerance)
+        # 1e3 * (2 pi / 60 deg)^4 = 1.3e6; with 1 deg that is 3e-4 N, with 0.25 deg 1e-6 N
+        assert found.claims[0].worst == pytest.approx(known, abs=3e-4 if steps == 360 else 1.3e-6)
         assert found.holds
 
 
@@ -193,15 +192,13 @@ TURN = "    longest_turn: ClassVar[float] = pi / 72.0  # an eighth of the shorte
 KEEPS = "    keeps: ClassVar[str] = EXTREMES\n"
 
 
-def test_what_is_not_declared_makes_it_slower_or_undecided_and_not_wrong(cam: Path) -> None:
+def test_what_is_not_declared_leaves_it_undecided_and_not_wrong(cam: Path) -> None:
     known = lowest_force()
-    few = loomfmu.evaluate(cam / "cam.toml", set={"grid": "windows"})
     before = (cam / "picking_cam.py").read_text()
     for line in (TURN, KEEPS):
         (cam / "picking_cam.py").write_text(before)
         changed(cam, (line, ""))
-        found = loomfmu.evaluate(cam / "cam.toml", set={"grid": "windows"})
-        assert len(found.trace.time) >= 3 * 360 + 1 > 2 * len(few.trace.time)
+        found = loomfmu.evaluate(cam / "cam.toml")
         assert found.claims[0].worst == pytest.approx(known, abs=3e-4)
         # with a `keeps` nothing says that these steps show its outputs
         assert found.claims[0].decided is (line == KEEPS)

@@ -286,7 +286,7 @@ def taken(read: Callable[[], object]) -> bool:
     return True
 
 
-KEYS = """machine loom.machine weft.machine head grid coupling steps_per_revolution belt.guide_clearance
+KEYS = """machine loom.machine weft.machine head coupling steps_per_revolution belt.guide_clearance
     belt.prescribe_length_factor duration belt.margin title record revolutions loom.weave shaft.machine
     belt.travel belt.fmu belt.units"""
 
@@ -296,7 +296,6 @@ def test_a_sweep_varies_what_set_takes_and_nothing_else(key: str) -> None:
     values = {
         "machine": "WL450-3600",
         "head": "GS900 left",
-        "grid": "windows",
         "coupling": "iterated",
         "belt.prescribe_length_factor": True,
         "belt.guide_clearance": 1e-3,

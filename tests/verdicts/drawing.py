@@ -18,7 +18,7 @@ FAMILIES = tuple(TABLES["families"])
 PLACE = re.compile(r"<(\w+)>")
 NAMED, SIGNALS = 4, 5  # claims of a scene: of kinds that its family lists, and on outputs that are drawn
 EXPRESSIONS = 2
-COARSEST, FINEST, MANY = 45, 4000, 1440  # steps in a revolution
+COARSEST, FINEST, MANY = 24, 4000, 1440  # steps in a revolution
 FASTEST = 900.0  # rev/min
 JUMP = (math.log(1e-5), math.log(1e-2))  # of a revolution, from one row of a table to a near one
 OWN = ("bound", "between", "also", "whole")  # what a listed claim says to this test, not to its scene
@@ -163,7 +163,7 @@ def _on_expressions(text: str, tables: Mapping[str, Any], random: Random) -> lis
 
 
 def _settings(random: Random) -> list[dict[str, Any]]:
-    """Steps on both grids, some many and some few, and an accuracy."""
+    """Steps, some many and some few, and an accuracy."""
     key = "steps_per_revolution"
     low, middle, high = map(math.log, (COARSEST, MANY, FINEST))
     few = [round(math.exp(random.uniform(low, middle))) for _ in range(3)]
@@ -172,7 +172,7 @@ def _settings(random: Random) -> list[dict[str, Any]]:
         {key: few[0]},
         {key: few[1] // 2 * 2},
         {key: many[0]},
-        {key: few[2], "grid": "windows"},
-        {key: many[1], "grid": "windows"},
+        {key: few[2]},
+        {key: many[1]},
         {"accuracy": 10.0 ** random.uniform(-7.0, -3.0)},
     ]

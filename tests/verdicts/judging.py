@@ -53,10 +53,7 @@ class Stated(NamedTuple):
 
 @dataclass(frozen=True)
 class Found:
-    """One verdict beside the truth; `first` is the first one of its claim and steps, whose error counts.
-
-    `together` are all claims that were judged in that run: a window grid has steps for each of them.
-    """
+    """One verdict beside the truth; `first` is the first one of its claim and steps, whose error counts."""
 
     scene: Drawn
     stated: Stated
@@ -65,7 +62,6 @@ class Found:
     verdict: Verdict
     truth: Truth
     first: bool
-    together: Sequence[Stated]
 
     @property
     def claim(self) -> Claim:
@@ -173,8 +169,7 @@ def _truth(stated: Stated, traces: Sequence[Signals]) -> Truth:
 
 
 def _on(scene: Drawn, claims: Sequence[tuple[Stated, Truth]], setting: dict[str, Any]) -> Iterator[Found]:
-    together = [stated for stated, _truth in claims]
-    loaded = parse(text_with(scene, together))
+    loaded = parse(text_with(scene, [stated for stated, _truth in claims]))
     try:
         with prepare(loaded, set=setting) as loom:
             found = loom.evaluate()
@@ -182,7 +177,7 @@ def _on(scene: Drawn, claims: Sequence[tuple[Stated, Truth]], setting: dict[str,
         return
     steps, before = found.steps / found.scene.periods, None
     for (stated, truth), verdict in zip(claims, found.claims, strict=True):
-        yield Found(scene, stated, setting, steps, verdict, truth, stated.claim is not before, together)
+        yield Found(scene, stated, setting, steps, verdict, truth, stated.claim is not before)
         before = stated.claim
 
 

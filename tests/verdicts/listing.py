@@ -24,13 +24,11 @@ def _paragraph(found: Found, path: Path) -> str:
         for key, value in found.setting.items()
     )
     path.parent.mkdir(parents=True, exist_ok=True)
-    others = [each for each in found.together if each is not found.stated] if "grid" in found.setting else []
-    text = text_with(found.scene, [found.stated, *others])
+    text = text_with(found.scene, [found.stated])
     path.write_text(f"{setting}\n{text}", encoding="utf-8")
     verdict, truth = found.verdict, found.truth
     fault = f"wrong: {found.wrong}" if found.wrong else "error too small"
     finest = f"--set steps_per_revolution={CONFIRMED * found.scene.fine[-1]}"
-    finest += " --set grid=uniform" if "grid" in found.setting else ""
     return (
         f"{found.scene.family} {found.scene.number}, {found.claim.label}: {fault}\n"
         f"  with {found.steps:g} steps in a revolution\n"

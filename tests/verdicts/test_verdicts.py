@@ -16,7 +16,7 @@ SEED = 5
 SETTINGS = [
     {"steps_per_revolution": 90},
     {"steps_per_revolution": MANY},
-    {"steps_per_revolution": MANY, "grid": "windows"},
+    {"steps_per_revolution": 24},
 ]
 
 

@@ -122,12 +122,13 @@ class BeltMonitor(ShaftDriven):
         TURNING,
         "Shaft speed at which the belt would just buckle here; 95493 rev/min if it cannot",
         nominal=100.0,
-        pole=True,
     )
     lowest_speed_limit: float = output(
         TURNING, "Lowest speed limit so far, on the continuous curve", nominal=100.0, lowest_of="speed_limit"
     )
-    deflection: float = output(LENGTH, "Largest deflection of the buckled belt, exact elastica", nominal=5e-3)
+    deflection: float = output(
+        LENGTH, "Largest deflection of the buckled belt, exact elastica", nominal=5e-3, brief=True
+    )
     at_risk: bool = output("1", "The belt is outside its guide and in compression", start=False)
     largest_deflection: float = output(
         LENGTH, "Largest deflection so far, on the continuous curve", nominal=5e-3, highest_of="deflection"

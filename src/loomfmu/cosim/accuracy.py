@@ -30,14 +30,18 @@ class Choice(NamedTuple):
 
 
 def fewest_steps(
-    scene: Scene, estimates: Estimates, judge: Callable[[Scene], tuple[Signals, Sequence[Verdict]]]
+    scene: Scene,
+    estimates: Estimates,
+    by_steps: Sequence[int],
+    judge: Callable[[Scene], tuple[Signals, Sequence[Verdict]]],
 ) -> Choice:
     """The fewest steps with which the error of every claim of a scene is below its `accuracy`.
 
+    `by_steps` are the claims, counted from 0, whose errors coarser steps show: without any, one run suffices.
     An error counts as a share of the claim's bound, or of its worst value where the bound is 0. Raises
     LoomfmuError where the accuracy is not reached.
     """
-    wanted, everything = scene.accuracy or 0.0, range(len(estimates.claims))
+    wanted = scene.accuracy or 0.0
     before: list[Judged] = []
     reached = f"no number of steps that was tried fits revolutions = {scene.periods:g}"
     for steps in tried_steps(scene.periods):
@@ -46,11 +50,11 @@ def fewest_steps(
             continue
         tried = altered(scene, steps_per_period=steps)
         trace, verdicts = judge(tried)
-        if len(before) == len(SHARES):
-            coarser = Coarser(everything, tuple(before))
+        if len(before) == len(SHARES) or not by_steps:
+            coarser = Coarser(by_steps, tuple(before))
             coarsest = altered(scene, steps_per_period=round(SHARES[-1] * steps))
             if crowded(coarsest):  # those that were tried before are hardly coarser
-                coarser = estimates.coarser(tried, uniform(tried), everything)
+                coarser = estimates.coarser(tried, uniform(tried), by_steps)
             estimated = estimates.of(tried, trace, verdicts, coarser)
             errors = [_share(estimated[each], estimates.claims[each].noise) for each in estimates.own_claims]
             number, error = max(enumerate(errors), key=lambda each: each[1])
@@ -58,7 +62,7 @@ def fewest_steps(
                 text = (
                     f"chose {steps} steps in a revolution: estimated error {error:.1g}, accuracy {wanted:g}"
                 )
-                return Choice(tried, replace(coarser, longer=estimates.longer(tried, everything)), text)
+                return Choice(tried, replace(coarser, longer=estimates.longer(tried, by_steps)), text)
             signal = verdicts[number].signal
             name = called(scene.claims[number], verdicts[number]) if number < len(scene.claims) else signal
             if estimated[number].error <= estimates.claims[number].left_by_model(trace, verdicts[number]):
@@ -68,7 +72,7 @@ def fewest_steps(
                     " steps_per_revolution"
                 )
             reached = f"with {steps} steps in a revolution, the error of {name!r} is {error:.1g} of its bound"
-        before = [estimates.judged(trace, everything), *before[: len(SHARES) - 1]]
+        before = [estimates.judged(trace, by_steps), *before[: len(SHARES) - 1]]
     raise LoomfmuError(
         f"accuracy = {wanted:g} is not reached: {reached}; set a larger accuracy, or steps_per_revolution"
     )

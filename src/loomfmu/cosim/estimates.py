@@ -25,7 +25,6 @@ from .importing.process import AVAILABLE
 from .master.grid import Grid, uniform
 from .scenes.instances import altered
 from .scenes.scene import Scene
-from .scenes.settings import WINDOWS
 
 MOST_VALUES = 50_000_000  # that half of a run may have: it is kept in memory
 
@@ -182,11 +181,11 @@ class Estimates:
                 )
         for number, decider in self._deciders.items():
             value = found[decider]
-            if decider in coarser.wanted and not abs(value.worst) > value.error:
+            if not math.isnan(value.error) and not abs(value.worst) > value.error:
                 about = f"{value.signal}, {value.shown(value.worst, 4)}, numerical error {value.shown_error}"
                 unshown.setdefault(number, f"decided by the sign of {about}")
         for number, why in unshown.items():
-            found[number] = _undecided(found[number], why)
+            found[number] = undecided(found[number], why)
         return tuple(found)
 
 
@@ -218,11 +217,11 @@ def _estimated(
     if not all(map(math.isfinite, coarser)):
         if not math.isfinite(verdict.distance):  # it fails for another reason
             return verdict
-        return _undecided(verdict, NO_VALUE)
+        return undecided(verdict, NO_VALUE)
     spread = max(factor * abs(worst - value) for factor, value in zip(method.factors, coarser, strict=True))
     if counts(trace, verdict):  # which is off by whole numbers
         spread = math.ceil(max(spread, method.miscounted * worst))
-    return claim.settled(trace, verdict, spread, method.floor, method.scatter)
+    return claim.settled(trace, verdict, spread, method.floor, method.scatter, claim.noise)
 
 
 def counts(trace: Signals, verdict: Verdict) -> bool:
@@ -263,17 +262,18 @@ def _noted(verdict: Verdict, note: str) -> Verdict:
     return replace(verdict, note="; ".join(filter(None, (verdict.note, note))))
 
 
-def _undecided(verdict: Verdict, why: str) -> Verdict:
+def undecided(verdict: Verdict, why: str) -> Verdict:
+    """The verdict without a decision, and why."""
     noted = _noted(verdict, why)
     return replace(noted, error=math.inf, spread=math.inf, decided=False, holds=False)
 
 
 def _unknown(verdict: Verdict, why: str) -> Verdict:
     """A verdict whose error is not known: what holds is undecided."""
-    return _undecided(verdict, why) if verdict.holds else _noted(verdict, why)
+    return undecided(verdict, why) if verdict.holds else _noted(verdict, why)
 
 
 def _coarser(scene: Scene, grid: Grid, share: float) -> Grid | None:
-    """Equal steps, about a share of the scene's; None where a grid of equal steps has no more."""
+    """Equal steps, about a share of the scene's; None where the scene's are no more."""
     coarse = uniform(scene, share)
-    return coarse if scene.grid == WINDOWS or coarse.steps < grid.steps else None
+    return coarse if coarse.steps < grid.steps else None

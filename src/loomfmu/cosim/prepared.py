@@ -18,6 +18,7 @@ from . import accuracy
 from .claims import judging
 from .claims.claim import Claim
 from .claims.measures import measure
+from .composed import Composed
 from .dependence import Dependence
 from .estimates import Coarser, Estimates
 from .importing import pool
@@ -26,15 +27,12 @@ from .master.grid import Grid, uniform
 from .master.master import Interrupted, Master
 from .planning.plan import InMemory, Plan, Stepping, build_needed, early_end, explained, record
 from .planning.requested import Requested
-from .planning.windows import window_grid
 from .provenance import attributes
-from .rates import Rates
 from .reading import check_bounds, check_set, requested
 from .recorded import finish, kept_readable, own_path, progress_of, target_of, writer_of, written_at
 from .results import Evaluation, Result
 from .scenes.instances import altered
 from .scenes.scene import Scene
-from .scenes.settings import WINDOWS
 from .scenes.values import Values
 from .tangents import Direction, Tangents, seeds_of
 
@@ -77,8 +75,8 @@ class Pattern:
         self._steps = 0  # in a revolution, as they were chosen last
 
     @cached_property
-    def _rates(self) -> Rates:
-        return Rates(self._requested, self._all)
+    def _composed(self) -> Composed:
+        return Composed(self._requested, self._all)
 
     def stepping(self, signals: Sequence[str]) -> Stepping:
         """Return the stepping of the scene with only the parts that these signals need."""
@@ -97,34 +95,41 @@ class Pattern:
             check_bounds(self._requested, scene, self.claims)
         return scene
 
-    def grid(self, scene: Scene, signals: Sequence[str]) -> Grid:
-        """The communication points of a run that keeps these signals."""
-        if scene.grid != WINDOWS:
-            return uniform(scene)
-        return window_grid(self._requested, scene, signals, self._in_memory)
-
-    def _in_memory(self, scene: Scene, signals: Sequence[str], grid: Grid) -> InMemory:
-        return self.stepping(signals).in_memory(scene, grid)
+    def _in_memory(self, scene: Scene, grid: Grid) -> InMemory:
+        return self.stepping(self.judged).in_memory(scene, grid)
 
     def _on(self, scene: Scene, grid: Grid) -> Signals:
-        return self._rates.added(scene, grid, self._in_memory(scene, self.judged, grid).recording)
+        return self._in_memory(scene, grid).recording
 
     def _judged(self, trace: Signals) -> tuple[Verdict, ...]:
         return tuple(claim.judge(trace) for claim in self._all)
 
-    def _estimated(self, scene: Scene, grid: Grid, coarser: Coarser, trace: Signals) -> tuple[Verdict, ...]:
-        run = self._rates.added(scene, grid, trace)
-        return self._estimates.of(scene, run, self._judged(run), coarser)[: len(self.claims)]
+    def _verdicts(self, scene: Scene, trace: Signals) -> tuple[Verdict, ...]:
+        """The verdicts on a run, with the errors of those that need no other one."""
+        known = self._composed.judged(scene, trace)
+        return tuple(known[n] if n in known else each.judge(trace) for n, each in enumerate(self._all))
+
+    @property
+    def _by_steps(self) -> list[int]:
+        """The claims, counted from 0, whose errors coarser steps show."""
+        return [number for number in range(len(self._all)) if number not in self._composed.claims]
+
+    def _estimated(self, scene: Scene, coarser: Coarser, trace: Signals) -> tuple[Verdict, ...]:
+        return self._estimates.of(scene, trace, self._verdicts(scene, trace), coarser)[: len(self.claims)]
 
     def evaluate(self, scene: Scene, errors: Errors = "all") -> Evaluation:
         """Run what the claims of the scene need, and judge them."""
         scene, known, chosen = self._with_steps(scene, errors)
-        grid = self.grid(scene, self.judged)
-        found = self._in_memory(scene, self.judged, grid)
-        run = self._rates.added(scene, grid, found.recording)
-        verdicts = self._judged(run)
+        grid = uniform(scene)
+        found = self._in_memory(scene, grid)
+        run = found.recording
+        verdicts = self._verdicts(scene, run)
         near = self._estimates.near(scene, run, verdicts)
-        wanted: Collection[int] = {"all": range(len(verdicts)), "near": near, "none": ()}[errors]
+        wanted: Collection[int] = {
+            "all": self._by_steps,
+            "near": near.intersection(self._by_steps),
+            "none": (),
+        }[errors]
         coarser = known or self._estimates.coarser(scene, grid, wanted)
         verdicts = self._estimates.of(scene, run, verdicts, coarser)
         return Evaluation(
@@ -148,8 +153,8 @@ class Pattern:
     def derived(self, scene: Scene, moved: Sequence[tuple[Scene, float]]) -> Derived:
         """Run what the claims need, with derivatives towards scenes that differ by a change of a value."""
         scene, _known, _chosen = self._with_steps(scene, "none")
-        grid = self.grid(scene, self.judged)
-        run = self._in_memory(scene, self.judged, grid)
+        grid = uniform(scene)
+        run = self._in_memory(scene, grid)
         directions = [
             self.tangents.along(scene, grid, seeds_of(scene, other, change), run.recording)
             for other, change in moved
@@ -165,16 +170,16 @@ class Pattern:
             return scene, None, ""
         if errors == "none" and self._steps:
             return altered(scene, steps_per_period=self._steps), None, ""
-        choice = accuracy.fewest_steps(scene, self._estimates, self._tried)
+        choice = accuracy.fewest_steps(scene, self._estimates, self._by_steps, self._tried)
         self._steps = int(choice.scene.steps_per_period)
         return choice
 
     def _tried(self, scene: Scene) -> tuple[Signals, Sequence[Verdict]]:
         trace = self._on(scene, uniform(scene))
-        return trace, self._judged(trace)
+        return trace, self._verdicts(scene, trace)
 
     def _coarser(self, scene: Scene, grid: Grid) -> Coarser:
-        return self._estimates.coarser(scene, grid, range(len(self._all)))
+        return self._estimates.coarser(scene, grid, self._by_steps)
 
     def run(
         self,
@@ -190,7 +195,7 @@ class Pattern:
         needed = self._requested.needed(self._all, self._requested.recorded)
         signals = list(dict.fromkeys([*needed, *self._estimates.shown]))
         stepping = self.stepping(signals)
-        plan = stepping.plan(scene, self.grid(scene, signals))
+        plan = stepping.plan(scene, uniform(scene))
         build_needed(plan.pruned.scene, report=progress)
         target = target_of(plan, path, overwrite, progress)
         replaced = written_at(target)
@@ -214,7 +219,7 @@ class Pattern:
                     except KeyboardInterrupt:
                         raise Interrupted from None
             # third-party instances are still there: one that crashes when it is freed takes nothing with it
-            judge = partial(self._estimated, scene, plan.grid, coarser)
+            judge = partial(self._estimated, scene, coarser)
             verdicts, trace = finish(lambda trace: remarked(judge(trace), remarks), writer, path, early)
         return Result(
             scene,

@@ -47,7 +47,6 @@ def attributes(plan: Plan, flavour: str, folder: Path) -> dict[str, str | float]
         ),
         **({"commit": commit()} if commit() else {}),
         **({} if scene.accuracy is None else {"accuracy": scene.accuracy}),
-        "grid": scene.grid,
         **({"notes": "\n".join(scene.notes)} if scene.notes else {}),
         **{f"fmu_{name}_version": fmu.version for name, fmu in sorted(fmus.items())},
         **{f"fmu_{name}_sha256": fmu.sha256 for name, fmu in sorted(fmus.items())},

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..declaring.variables import Component, variables_of
+from ..declaring.variables import EXTREMES, Component, variables_of
 from ..errors import LoomfmuError
 from ..fmi.native.libraries import needed_library
 from ..traces import Recording
@@ -47,7 +47,7 @@ class _Copy(ctypes.Structure):
 
 
 class _Stepped(ctypes.Structure):
-    _fields_ = [*fields(part="void_p", component="void_p"), *arrays("copies")]
+    _fields_ = [*fields(part="void_p", component="void_p"), *arrays("copies"), *fields(placed="size_t")]
 
 
 class _Driven(ctypes.Structure):
@@ -151,9 +151,10 @@ class Tangents:
             )
         ]
         parts = [
-            _Stepped(each.part, each.memory.ctypes.data, ctypes.addressof(wires), len(wires))
+            _Stepped(each.part, each.memory.ctypes.data, ctypes.addressof(wires), len(wires), 0)
             for each, wires in zip(self._instances, copies, strict=True)
         ]
+        self._holding = [n for n, name in enumerate(order) if _holds(scene.instances[name])]
         driven = [
             _Driven(self._place(sink), ord(TYPES[self._named[sink[0]].variables[sink[1]].type]))
             for sink in ((drive.instance, drive.variable) for drive in scene.drives)
@@ -170,7 +171,7 @@ class Tangents:
             (_Driven * len(driven))(*driven),
             (ctypes.c_void_p * len(self._kept))(*(place for _signal, place in self._kept)),
         )
-        self._memory = copies, arrays
+        self._memory, self._parts = (copies, arrays), arrays[0]
         self._plan = _Plan(*(part for array in arrays for part in (ctypes.addressof(array), len(array))))
 
     def _place(self, name: tuple[str, ...]) -> int:
@@ -198,10 +199,14 @@ class Tangents:
     def rates(self, scene: Scene, grid: Grid) -> dict[str, tuple[Floats, Floats]]:
         """Return the samples of each signal, and their derivatives by the time.
 
-        These are exact where no mechanism remembers anything: where outputs depend on the time and on inputs.
+        These are exact where outputs depend on the time and on inputs alone. Held extremes are not searched.
         """
         ones = np.ones(grid.steps)
+        for place in self._holding:
+            self._parts[place].placed = 1
         rows = self._rows(scene, grid, {}, ones, 0.0 * ones)
+        for place in self._holding:
+            self._parts[place].placed = 0
         return {signal: (rows[:, n, 0], rows[:, n, 1]) for n, (signal, _place) in enumerate(self._kept)}
 
     def _rows(self, scene: Scene, grid: Grid, seeds: Seeds, starts: Floats, sizes: Floats) -> Floats:
@@ -228,6 +233,11 @@ def _dual(instance: Instance) -> _Instance:
     if component is None:
         raise LoomfmuError(f"{instance.name} has no derivatives: only our own native FMUs have them")
     return _Instance(instance, component)
+
+
+def _holds(instance: Instance) -> bool:
+    component = instance.fmu.component
+    return component is not None and component.keeps == EXTREMES
 
 
 def seeds_of(scene: Scene, moved: Scene, change: float) -> dict[tuple[str, str], float]:

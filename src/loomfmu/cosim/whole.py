@@ -18,7 +18,7 @@ from .scenes.graph import step_order
 from .scenes.headings import heading
 from .scenes.instances import Instance
 from .scenes.scene import Scene, files_of
-from .scenes.settings import ITERATED, UNIFORM
+from .scenes.settings import ITERATED
 
 
 def export(
@@ -48,8 +48,7 @@ def export(
             f" set coupling = {ITERATED!r}"
         )
     write_file(path, zipped(contents(made, platforms, fmi)), FMU, inputs, overwrite)
-    grid = f"grid = {scene.grid!r} is ignored: the FMU takes equal steps"
-    return [*scene.notes, *[grid] * (scene.grid != UNIFORM)]
+    return [*scene.notes]
 
 
 def system(scene: Scene, whole: str = "one FMU of a whole scene", instead: str = "use --ssp") -> System:

@@ -109,7 +109,7 @@ def output(
     lowest_of: str | None = None,
     highest_of: str | None = None,
     so_far: bool = False,
-    pole: bool = False,
+    brief: bool = False,
     valid_if: str | None = None,
     error: str | None = None,
 ) -> Any:

@@ -62,8 +62,8 @@ class Variable:
     """The only parameter with which it has an effect: a Boolean, or an enumeration that starts with off."""
     unless: str | None = None
     """The parameter, of the same types, that takes its effect away."""
-    pole: bool = False
-    """It grows without bound at the edges of its component's windows."""
+    brief: bool = False
+    """It may leave its rest and come back within a step, unseen at both ends."""
     element: str = ""
     """Its place in an array, such as `table[35]` for `table_36`."""
     carried: bool = False

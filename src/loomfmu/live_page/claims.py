@@ -7,10 +7,10 @@ from typing import Any
 
 from ..cosim.claims.claim import Claim
 from ..cosim.claims.judging import FIELDS, Form, Table, beside, number_of
+from ..cosim.composed import Composed
 from ..cosim.dependence import Dependence, Method
 from ..cosim.estimates import coarseness, counts
 from ..cosim.planning.requested import SHAFT_ANGLE, Requested
-from ..cosim.rates import Rates
 from ..cosim.scenes.scene import Scene
 from ..cosim.standard import standard
 from ..fmi.native.libraries import module_of
@@ -38,7 +38,7 @@ def claims(
     dependence = Dependence(requested, requested.claims)
     unshown = [dependence.unshown(each) for each in ends]
     asked = zip(requested.claims, dependence.methods, verdicts, strict=True)
-    rated = {*Rates(requested, requested.claims).signals}
+    rated = Composed(requested, requested.claims).unrated
     rows = [
         _claim(claim, method, verdict, trace, table, _not_live(claim, rated & {*claim.signals(requested)}))
         | {"unshown": next((each[number] for each in unshown if number in each), "")}

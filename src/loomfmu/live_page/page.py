@@ -8,7 +8,7 @@ import tempfile
 from base64 import b64encode
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -20,7 +20,6 @@ from ..cosim.recorded import usual_path
 from ..cosim.run import run
 from ..cosim.scenes.headings import heading
 from ..cosim.scenes.scene import Scene, files_of
-from ..cosim.scenes.settings import UNIFORM
 from ..cosim.standard import standard
 from ..cosim.whole import system
 from ..declaring.upstream import sources_of, upstream
@@ -75,7 +74,7 @@ def write(
         LoomfmuError: bad input, what cannot be compiled or varied, or the file cannot be written
     """
     need("a page that runs its scene", "report", "native")
-    loaded = replace(checked(scene, set, "native"), grid=UNIFORM)
+    loaded = checked(scene, set, "native")
     path = path_of(output, "output") if output else usual_path(loaded, "_page.html")
     inputs = files_of(loaded)
     check_target(path, PAGE, inputs, overwrite)

@@ -6,7 +6,7 @@ What lifts the warp is judged: the carrier where a frame has a damper. The note 
 from collections.abc import Callable, Sequence
 
 from ..cosim.claims.arguments import Angles, Name, Quantity, angles_text, argument
-from ..cosim.claims.claim import ANGLE, AT_MOST, LANDINGS, PERCENT, Claim
+from ..cosim.claims.claim import ANGLE, AT_MOST, PERCENT, Claim
 from ..cosim.claims.conditions import Always, Condition, Spans, Sum
 from ..cosim.claims.judging import Question, needs_shaft
 from ..cosim.claims.movers import Wired
@@ -51,7 +51,7 @@ class _Span(_Lifted, kind=False):
 
     at_least: float = argument(Quantity("rad", "deg", usual=1.5, low=0.0))
 
-    unit, grid = ANGLE, LANDINGS
+    unit = ANGLE
 
     def asked(self, trace: Signals, rule: str, text: str, of: str, *numbers: float | str) -> Question:
         """The question by a rule; `of` is what the verdict names of a frame without a damper."""
@@ -109,7 +109,7 @@ class DwellContains(_Lifted):
     tolerance: float = argument(SHARE, TOLERANCE)
 
     needs = ("heald.lift",)
-    sense, unit, grid = AT_MOST, PERCENT, LANDINGS
+    sense, unit = AT_MOST, PERCENT
 
     def question(self, trace: Signals) -> Question:
         needs_shaft(trace)

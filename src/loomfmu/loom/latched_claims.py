@@ -1,7 +1,7 @@
 """Claims on extremes that a component itself finds on its continuous curve, and keeps."""
 
 from ..cosim.claims.arguments import Name, Quantity, argument
-from ..cosim.claims.claim import AT_MOST, FORCE, LANDINGS, LENGTH, NOTHING, VELOCITY, Claim
+from ..cosim.claims.claim import AT_MOST, FORCE, LENGTH, VELOCITY, Claim
 from ..cosim.claims.conditions import Condition, above
 from ..cosim.claims.judging import Question
 from ..cosim.claims.movers import Wired
@@ -17,7 +17,6 @@ class LowestMargin(Claim):
     belt: str = argument(Name(), "belt")
 
     needs = ("belt.margin", "belt.lowest_margin")
-    grid = LANDINGS
     noise = 3e-9  # of the critical force: what the monitor takes for noise of its samples
 
     def question(self, trace: Signals) -> Question:
@@ -45,7 +44,7 @@ class BeltDeflection(Claim):
         "belt.folded",
         "belt.too_long",
     )
-    sense, unit, grid = AT_MOST, LENGTH, NOTHING
+    sense, unit = AT_MOST, LENGTH
 
     def question(self, trace: Signals) -> Question:
         names = ("largest_deflection", "deflection", "largest_at_risk", "folded", "too_long")
@@ -61,7 +60,7 @@ class PeakLoad(Claim):
     at_most: float = argument(Quantity("N", low=0.0))
 
     needs = ("damper.transmitted_force", "damper.peak_load")
-    sense, unit, grid = AT_MOST, FORCE, NOTHING
+    sense, unit = AT_MOST, FORCE
 
     def question(self, trace: Signals) -> Question:
         latch = f"{self.damper}.peak_load"
@@ -76,7 +75,7 @@ class StopContacts(Claim):
     at_most: float = argument(Quantity("1", low=0.0))
 
     needs = ("damper.stop_contacts",)
-    sense, grid = AT_MOST, NOTHING
+    sense = AT_MOST
 
     def question(self, trace: Signals) -> Question:
         counter = f"{self.damper}.stop_contacts"
@@ -90,7 +89,7 @@ class HealdBlows(Claim):
     at_most: float = argument(Quantity("m/s", low=0.0))
 
     needs = ("play.hardest_blow", "play.blows")
-    sense, unit, grid = AT_MOST, VELOCITY, NOTHING
+    sense, unit = AT_MOST, VELOCITY
 
     def question(self, trace: Signals) -> Question:
         latch = f"{self.play}.hardest_blow"

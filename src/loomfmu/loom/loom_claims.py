@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from ..cosim.claims.arguments import Edges, Flag, Name, Names, Quantity, Window, argument
-from ..cosim.claims.claim import AT_LEAST, AT_MOST, LANDINGS, LENGTH, ONE, SPEED, VELOCITY, Claim
+from ..cosim.claims.claim import AT_LEAST, AT_MOST, LENGTH, ONE, SPEED, VELOCITY, Claim
 from ..cosim.claims.conditions import Always, Condition, Sometime, Sum, Unprovable
 from ..cosim.claims.judging import Form, Question, needs_shaft
 from ..cosim.claims.movers import Wired
@@ -102,7 +102,6 @@ class _Transfer(Claim, kind=False):
     transfer: str = argument(Name(), "transfer")
 
     reads = ("transfer",)
-    grid = LANDINGS
 
     @property
     def apart(self) -> Sum:
@@ -129,9 +128,6 @@ class TransferInTime(_Transfer):
         return Question(
             "transfer", [self.form(f"overlap of the heads {window.words}", signal)], [signal], numbers
         )
-
-    def extremes(self) -> list[tuple[str, float]]:
-        return [(f"{self.transfer}.overlap", -1.0)]
 
     def conditions(self, run: Wired) -> tuple[Condition, ...]:
         return (Sometime(self.apart.negated, self.window),)

@@ -14,7 +14,6 @@ PLAIN = {
     "steps_per_revolution": "Communication steps per revolution",
     "duration": "Duration",
     "step": "Communication step",
-    "grid": "Grid",
     "ended_by": "Ended early by",
     "status": "Status",
     "software": "Software",
@@ -23,7 +22,7 @@ PLAIN = {
 
 
 def section(subject: Subject) -> Section:
-    """Machine, values that differ from the scene, grid, warnings, versions and hashes of the first trace."""
+    """Machine, values that differ from the scene, warnings, versions and hashes of the first trace."""
     attributes, overrides = subject.trace.attributes, subject.trace.overrides
     facts = [
         (label, _shown(key, attributes[key]))

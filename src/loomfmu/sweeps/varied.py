@@ -10,7 +10,7 @@ from ..cosim.importing.fmus import Port
 from ..cosim.scenes.instance_tables import overridden, unit_of
 from ..cosim.scenes.instances import TOLERANCE, Instance
 from ..cosim.scenes.scene import Scene, check_free
-from ..cosim.scenes.settings import COARSE, TIMES, truth
+from ..cosim.scenes.settings import STEPS, TIMES, truth
 from ..errors import LoomfmuError, listed, within
 from ..machines import TAKERS, named
 from ..own.declared import FILES, ISOLATED, PARAMETER_SETS
@@ -18,7 +18,7 @@ from ..own.declared import FILES, ISOLATED, PARAMETER_SETS
 Value = float | int | bool | str
 
 SECONDS = ("duration", "step")
-COUNTS = ("steps_per_revolution", COARSE)
+COUNTS = (STEPS,)
 
 
 def shown_unit(unit: str, display: str) -> str:
@@ -103,7 +103,7 @@ def _published(key: str, kind: str) -> Varied:
 def _of_scene(key: str) -> Varied:
     """One of the scene's own keys."""
     about = key.replace("_", " ")
-    if key not in (*TIMES, COARSE):
+    if key not in TIMES:
         return Varied(key, (key,), "Text", "1", "1", about, _text(key), needs_scene=True)
     unit = "s" if key in SECONDS else "1"
 

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+import numpy as np
 from numpy.typing import NDArray
 
 from .signals import Channel, Column, Floats, Signals
@@ -77,3 +78,49 @@ class Extended(Signals):
     def parameter(self, signal: str) -> float:
         """A parameter of an instance as it was set."""
         return self._run.parameter(signal)
+
+
+RATE = "rate of "
+
+
+class Resampled(Extended):
+    """A run whose signals were computed at other times: only those that were `made`, with their `rates`."""
+
+    def __init__(self, run: Signals, time: Floats, made: dict[str, NDArray[Any]], rates: Mapping[str, str]):
+        super().__init__(run, made, rates)
+        self._time, self._kept = time, dict[Any, Any]()
+
+    @property
+    def shared(self) -> dict[Any, Any]:
+        """Data that the claims on the run share."""
+        return self._kept
+
+    @property
+    def time(self) -> Floats:
+        """Time of the samples [s]."""
+        return self._time
+
+    @property
+    def shaft_angle(self) -> Floats:
+        """Shaft angle of the samples, not wrapped [rad]; zeros in a run without a shaft."""
+        found: Floats = self._made.get("shaft.angle", np.zeros(len(self._time)))
+        return found
+
+    def __contains__(self, signal: object) -> bool:
+        return signal in self._made
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._made)
+
+    def channel(self, signal: str) -> Channel:
+        """The channel of a signal. Raises LoomfmuError for one that is not there."""
+        return self._run.channel(signal) if signal in self._run else super().channel(signal)
+
+    def columns(self, signals: Sequence[str]) -> list[Column]:
+        """The time of the samples, then the values of some signals."""
+        return [Column.of(self._time), *(self._column(each) for each in signals)]
+
+    def beside(self, signal: str, role: str) -> str | None:
+        """The signal that says more of this one in a role of `Beside`, if there is one."""
+        found = self._run.beside(signal, role) if signal in self._run else None
+        return found if found in self._made else None

@@ -244,11 +244,10 @@ def test_a_new_kind_of_claim_is_one_class() -> None:
     found = evaluated("200 mm")
     assert found and found.claims[0].claim == "ends near"
     assert "heald_1.lift" in found.trace and "heald_2.lift" not in found.trace
-    # its usual value, its unit and its limit are known, and the window grid leaves no step out
+    # its usual value, its unit and its limit are known
     assert "height = 50" in evaluated(50).warnings[0]
     with pytest.raises(LoomfmuError, match=r"claim 'ends_near': height: '1 N' is in N, which does not fit m"):
         evaluated("1 N")
-    assert evaluated(1, grid="windows").steps >= 3 * 1440
 
 
 LIMIT = {"signal": "belt.lowest_speed_limit"}

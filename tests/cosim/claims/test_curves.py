@@ -6,7 +6,7 @@ from drawn_runs import drawn, turning
 from numpy.polynomial import polynomial
 
 from loomfmu import judge
-from loomfmu.cosim.claims.judging import ROOM, Question, Run
+from loomfmu.cosim.claims.judging import ROOM, Run
 from loomfmu.traces import Recording
 
 RANDOM = np.random.default_rng(5)
@@ -46,8 +46,8 @@ def within(roots: np.ndarray, low: float = 0.0, high: float = 1.0) -> np.ndarray
 
 
 def crossings(trace: Recording) -> list[float]:
-    """The times at which `a.x` passes 0, as a claim on the transfer takes them."""
-    return Run(trace).landings(trace, Question("transfer_speed", [], ["a.x"], [0.0, 0.0]))
+    """The times at which `a.x` passes 0."""
+    return Run(trace).passages(trace, "a.x", 0.0)
 
 
 @pytest.mark.parametrize("rates", [0, 1, 2])

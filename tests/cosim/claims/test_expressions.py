@@ -250,7 +250,7 @@ def test_a_case_that_is_farther_from_the_bound_but_less_sure_leaves_it_undecided
     }
     for trace, word in ((run(), "holds"), (run(**unsure), "undecided")):
         asked = claims.read({"kind": "below", "signal": "max(a.x, b.x)", "bound": "3.5 m"}, trace.unit)
-        found = asked.settled(trace, asked.judge(trace), 0.0, 1e-12, 0.0)
+        found = asked.settled(trace, asked.judge(trace), 0.0, 1e-12, 0.0, 0.0)
         # b.x comes to 3 m, 0.5 m from the bound; a.x to 1 m, but it may be off by 3 m
         assert (found.word, found.worst) == (word, pytest.approx(3.0, rel=1e-9))
     assert found.error == pytest.approx(3.0)

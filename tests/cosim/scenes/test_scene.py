@@ -180,7 +180,6 @@ def test_a_wire_can_be_added_replaced_and_cut(lines: str, less: Any, more: Any) 
             "wires: 'belt.travl' is not wired; did you mean",
         ),
         ('coupling = "iterate"', "coupling = 'iterate' is unknown; did you mean 'iterated'"),
-        ('grid = "window"', "grid = 'window' is unknown; did you mean 'windows'"),
     ],
 )
 def test_a_name_with_a_slip_is_refused(text: str, said: str) -> None:

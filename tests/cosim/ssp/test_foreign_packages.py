@@ -126,8 +126,6 @@ def test_it_starts_when_it_says(tmp_path: Path, isolated: bool) -> None:
     np.testing.assert_allclose(later["drive_motor.time_"], later.time, rtol=0, atol=1e-12)
     for signal in set(usual) - {"drive_motor.time_"}:  # nothing else depends on when it is
         np.testing.assert_allclose(later[signal], usual[signal], rtol=1e-9, atol=1e-9, err_msg=signal)
-    with pytest.raises(LoomfmuError, match=r"it starts at -1\.5 s, so that it runs on a uniform grid alone"):
-        run(tmp_path / "elsewhere.ssp", set={"grid": "windows"}, output=tmp_path / "elsewhere.h5")
 
 
 def test_it_runs_with_its_own_wires_parameters_and_step(tmp_path: Path) -> None:

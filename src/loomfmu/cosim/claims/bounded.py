@@ -12,7 +12,7 @@ from ... import units
 from ...errors import LoomfmuError
 from ...traces import Signals
 from .arguments import Bound, Edges, Flag, Name, Window, argument
-from .claim import AT_LEAST, AT_MOST, LANDINGS, Claim
+from .claim import AT_LEAST, AT_MOST, Claim
 from .conditions import Condition, Unprovable, above, present
 from .judging import Form, Question, needs_shaft
 from .movers import Wired
@@ -31,7 +31,6 @@ class Bounded(Claim, kind=False):
     window: Window | None = argument(Edges("rad", "deg", usual=1.5), None)
     at_samples: bool = argument(Flag(), False)
 
-    grid = LANDINGS
     text: ClassVar[str]
 
     def signals(self, scene: Wired) -> list[str]:
@@ -45,11 +44,11 @@ class Bounded(Claim, kind=False):
         return [self.bound.partition(".")[0]] if isinstance(self.bound, str) else []
 
     def question(self, trace: Signals) -> Question:
-        text, window = self.text + " at the samples" * self.at_samples, [0.0, 0.0, 0.0, 0.0]
+        text, window = self.text + " at the samples" * self.at_samples, [0.0, 0.0, 0.0]
         if self.window:
             needs_shaft(trace)
             text += f" {self.window.words}"
-            window = [1.0, self.window.start, self.window.width, self.window.end]
+            window = [1.0, self.window.start, self.window.width]
         a_speed = isinstance(self.bound, str) and trace.unit(self.signal) == "rad/s"
         if isinstance(self.bound, str):
             check_speed(self.bound, trace.parameter(self.bound), trace.unit(self.signal))
@@ -58,7 +57,7 @@ class Bounded(Claim, kind=False):
         return Question("bounded", [form], [self.signal], numbers)
 
     def extremes(self) -> list[tuple[str, float]]:
-        return [(self.signal, self.sense)]
+        return [] if self.at_samples else [(self.signal, self.sense)]
 
     def conditions(self, run: Wired) -> tuple[Condition, ...]:
         signal = present(self.signal, run, self.sense)

@@ -4,7 +4,7 @@ import re
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, fields
-from typing import ClassVar, NamedTuple, dataclass_transform
+from typing import ClassVar, dataclass_transform
 
 from ...traces import Signals, Verdict
 from .arguments import Argument, Name, argument, argument_of
@@ -19,21 +19,6 @@ ONE, PERCENT, ANGLE = ("1", "1"), ("1", "%"), ("rad", "deg")
 LENGTH, FORCE, SPEED, POWER = ("m", "mm"), ("N", "N"), ("rad/s", "rev/min"), ("W", "kW")
 VELOCITY = ("m/s", "m/s")
 
-# What a claim needs of the window grid: all equal steps, steps that land where `landings` says, or nothing,
-# since its component finds what is judged on its own continuous curve.
-EVERY_STEP, LANDINGS, NOTHING = "every step", "landings", "nothing"
-
-
-class Landings(NamedTuple):
-    """Times and extremes on which steps of the window grid land for a claim.
-
-    `times` are known to be looked at [s]; of each signal in `extremes` the lowest values count, or with -1
-    the highest ones.
-    """
-
-    times: list[float]
-    extremes: list[tuple[str, float]]
-
 
 @dataclass_transform(frozen_default=True, kw_only_default=True, field_specifiers=(argument,))
 @dataclass(frozen=True, kw_only=True)
@@ -42,9 +27,8 @@ class Claim(ABC):
 
     `name` is what its verdict calls it. A kind states which signals it `needs` as "argument.variable", the
     argument being one that names an instance, and in `reads` the instances of which it needs parameters
-    alone; whether what it judges is to be `AT_LEAST` or `AT_MOST` its bound, and the `unit` of both; and what
-    it needs of the window `grid`, which is every step unless it says otherwise. `noise` is what its number
-    may be off by with any steps, in its unit. The rules by which it is judged are in C.
+    alone; whether what it judges is to be `AT_LEAST` or `AT_MOST` its bound, and the `unit` of both. `noise`
+    is what its number may be off by with any steps, in its unit. The rules by which it is judged are in C.
     `not_live` says why a page in which the scene runs does not judge it, if so.
     """
 
@@ -55,7 +39,6 @@ class Claim(ABC):
     reads: ClassVar[tuple[str, ...]] = ()
     sense: ClassVar[int] = AT_LEAST
     unit: ClassVar[tuple[str, str]] = ONE
-    grid: ClassVar[str] = EVERY_STEP
     noise: ClassVar[float] = 0.0
     not_live: ClassVar[str] = ""
 
@@ -98,25 +81,23 @@ class Claim(ABC):
         return run_of(trace).verdict(trace, self.question(trace), self.name)
 
     def settled(
-        self, trace: Signals, verdict: Verdict, spread: float, share: float, scatter: float
+        self, trace: Signals, verdict: Verdict, spread: float, share: float, scatter: float, noise: float
     ) -> Verdict:
         """Return its verdict with the numerical error, of which `spread` differs between resolutions.
 
-        Changes below that share of the value, or below `scatter` times how far the signal has moved since the
-        start, do not show the order of an error.
+        Changes below `noise`, below that share of the value, or below `scatter` times how far the signal has
+        moved since the start, do not show the order of an error.
         """
-        return run_of(trace).settled(trace, self.question(trace), verdict, spread, self.noise, share, scatter)
+        return run_of(trace).settled(trace, self.question(trace), verdict, spread, noise, share, scatter)
 
     def left_by_model(self, trace: Signals, verdict: Verdict) -> float:
         """Return the model's own error, on any steps, as the error output of the judged signal states it."""
         return run_of(trace).model_error(trace, self.question(trace), verdict)
 
     def extremes(self) -> list[tuple[str, float]]:
-        """Return the signals whose lowest values count for the window grid, or with -1 the highest ones."""
+        """Return the signals whose lowest values are all that it judges, or with -1 the highest ones."""
         return []
 
-    def landings(self, trace: Signals) -> Landings:
-        """Return where steps of the window grid must land, as a coarse run of its signals shows."""
-        if self.grid != LANDINGS:
-            return Landings([], [])
-        return Landings(run_of(trace).landings(trace, self.question(trace)), self.extremes())
+    def motions(self, run: Signals) -> list[tuple[Signals, str, float]]:
+        """Return these signals of a run, each with the run that has it."""
+        return [(run, signal, sense) for signal, sense in self.extremes()]

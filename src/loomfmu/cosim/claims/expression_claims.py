@@ -8,7 +8,6 @@ import numpy as np
 
 from ...traces import Signals, Verdict
 from .bounded import Above, Below, Bounded
-from .claim import EVERY_STEP
 from .conditions import Always, Condition, Sum, Unprovable, present
 from .expressed import Expressed
 from .expressions import Expression
@@ -23,7 +22,6 @@ class _OfExpression(Bounded, kind=False):
     which must all keep it. With any other one the values between the samples are not known.
     """
 
-    grid = EVERY_STEP
     not_live = "a page judges signals, not expressions"
 
     @property
@@ -33,6 +31,14 @@ class _OfExpression(Bounded, kind=False):
 
     def signals(self, scene: Wired) -> list[str]:
         return list(self._expression.node.signals)
+
+    def extremes(self) -> list[tuple[str, float]]:
+        cases = [] if self.at_samples else self._cases
+        smooth = all(case._expression.node.smooth for case in cases)
+        return [(str(case.signal), self.sense) for case in cases if smooth]
+
+    def motions(self, run: Signals) -> list[tuple[Signals, str, float]]:
+        return [(Expressed(run, case._expression), str(case.signal), self.sense) for case in self._cases]
 
     def unit_in(self, run: Wired) -> str:
         return self._expression.unit
@@ -69,20 +75,20 @@ class _OfExpression(Bounded, kind=False):
         return not np.isnan(verdict.worst), self.sense * verdict.worst
 
     def settled(
-        self, trace: Signals, verdict: Verdict, spread: float, share: float, scatter: float
+        self, trace: Signals, verdict: Verdict, spread: float, share: float, scatter: float, noise: float
     ) -> Verdict:
         return self._whole(
-            [case._settled(trace, each, spread, share, scatter) for case, each in self._judged(trace)]
+            [case._settled(trace, each, spread, share, scatter, noise) for case, each in self._judged(trace)]
         )
 
     def _settled(
-        self, trace: Signals, verdict: Verdict, spread: float, share: float, scatter: float
+        self, trace: Signals, verdict: Verdict, spread: float, share: float, scatter: float, noise: float
     ) -> Verdict:
         """Return the verdict on this case alone; a difference has at least the errors of its two values."""
         run = Expressed(trace, self._expression)
         if run.why:
             return verdict
-        noise, asked = run.noise(share, scatter), super().question(run)
+        noise, asked = max(noise, run.noise(share, scatter)), super().question(run)
         return run_of(trace).settled(run, asked, verdict, spread, noise, share, 0.0)
 
     def left_by_model(self, trace: Signals, verdict: Verdict) -> float:

@@ -37,7 +37,7 @@ _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {  # results and arguments
     "judge": (_Yes, [_Place, _Place, _Text, _Place]),
     "settle": (_Yes, [_Place, _Place, _Place, *[_Real] * 4]),
     "model_error": (_Real, [_Place, _Place, _Place]),
-    "landings": (_Size, [_Place, _Place, _Place, _Size]),
+    "passages": (_Size, [_Place, _Int, _Real, _Place, _Size]),
     "stands_at": (_Size, [_Place, _Real, _Place, _Size]),
     "value_at": (_Real, [_Place, _Int, _Real]),
     "points_of": (_Size, [_Place, _Int, _Place]),
@@ -163,9 +163,9 @@ class Run:
         verdict_ = _numbers_of(verdict, question)
         return float(self._library.model_error(self._run, self._list(trace, question), verdict_))
 
-    def landings(self, trace: Signals, question: Question) -> list[float]:
-        """Return times at which a question looks, as far as they are known before its extremes are."""
-        return _all(self._library.landings, self._run, self._list(trace, question))
+    def passages(self, trace: Signals, signal: str, level: float) -> list[float]:
+        """Return all times at which a signal passes a level."""
+        return _all(self._library.passages, self._run, self._number(trace, signal), level)
 
     def stands_at(self, angle: float) -> list[float]:
         """Return all times at which the shaft stands at an angle of its revolution, each once."""

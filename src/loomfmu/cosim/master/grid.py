@@ -33,16 +33,13 @@ class Grid:
     """Communication points: equal steps, counted as integers so that nothing drifts, or `points` [s].
 
     `rate` is the number of equal steps, or of seconds of chosen points, in a revolution or whatever else the
-    scene counts its inputs in, from the `start` [s] on. `notes` tell how points were chosen, `scouted` is the
-    number of steps of FMUs that this took.
+    scene counts its inputs in, from the `start` [s] on.
     """
 
     steps: int
     step_size: float
     rate: float
     points: Floats | None = None
-    notes: tuple[str, ...] = ()
-    scouted: int = 0
     start: float = 0.0
 
     @property
@@ -199,10 +196,10 @@ def _rows(scene: Scene, turns: Iterable[float]) -> Floats:
     return times[(times > 0.0) & (times < scene.steps * scene.step_size)]
 
 
-def grid_of_points(scene: Scene, points: Floats, notes: tuple[str, ...] = (), scouted: int = 0) -> Grid:
+def grid_of_points(scene: Scene, points: Floats) -> Grid:
     """Steps from point to point [s], strictly rising from 0."""
     largest = float(np.max(np.diff(points)))
-    return Grid(len(points) - 1, largest, period(scene), np.ascontiguousarray(points), notes, scouted)
+    return Grid(len(points) - 1, largest, period(scene), np.ascontiguousarray(points))
 
 
 def period(scene: Scene) -> float:

@@ -167,9 +167,8 @@ def early_end(plan: Plan, ended: Ended | None) -> Early:
 def explained(plan: Plan) -> tuple[str, ...]:
     """Return what a run skips, why, and how many steps that saves."""
     kept, whole = len(plan.pruned.scene.instances), len(plan.scene.instances)
-    taken, scouted = plan.grid.steps, plan.grid.scouted
-    done, full = kept * taken + scouted, whole * plan.scene.steps
-    lines = [*plan.pruned.skipped, *plan.grid.notes]
+    taken, lines = plan.grid.steps, plan.pruned.skipped
+    done, full = kept * taken, whole * plan.scene.steps
     ran = f"ran {kept} of {whole} FMUs, {taken} steps each"
     if done == full:
         saved = "no steps skipped" if lines else "nothing skipped"
@@ -177,5 +176,4 @@ def explained(plan: Plan) -> tuple[str, ...]:
     if not done:
         return (*lines, f"ran none of {whole} FMUs; {full} FMU steps skipped")
     ratio = f"{full / done:.3g} times fewer" if done < full else f"{100 * (done / full - 1):.2g} % more"
-    search = f" and {scouted} to find the windows" if scouted else ""
-    return (*lines, f"{ran}{search}: {done} FMU steps instead of {full}, {ratio}")
+    return (*lines, f"{ran}: {done} FMU steps instead of {full}, {ratio}")

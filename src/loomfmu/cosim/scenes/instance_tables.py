@@ -15,7 +15,7 @@ from ..importing.facts import facts_of
 from ..importing.fmus import Fmu
 from ..standard import standard
 from .instances import Instance, check_name, is_numbered, members, stem
-from .settings import KEYS, TIMES, WHOLE, dotted
+from .settings import KEYS, TIMES, WHOLE, dotted, refuse_gone
 
 WEAVE = "loom.weave"  # the frames depend on it, so it is set before there are instances
 
@@ -58,6 +58,7 @@ def _instance_tables(tables: dict[str, Any], directory: Path) -> dict[str, dict[
     for key, table in tables.items():
         if key in KEYS:
             continue
+        refuse_gone(key)
         if not isinstance(table, dict):
             raise LoomfmuError(f"{key} is unknown{suggestion(key, KEYS)}")
         if key not in given and key in (of_loom if "component" in table else numbered):
@@ -201,6 +202,7 @@ def overridden(instances: Mapping[str, Instance], key: str) -> list[tuple[str, s
         return [(name, key) for name in found]
     if not dot:
         if key not in (*TIMES, *WHOLE):
+            refuse_gone(key)
             raise LoomfmuError(f"{shown(key)} cannot be set{_nearest(key, instances)}")
         return [("", key)]
     found = [instance] if instance in instances else members(instance, instances)

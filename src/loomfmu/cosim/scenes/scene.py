@@ -17,7 +17,7 @@ from . import notes
 from .graph import Drive, Wire, usual_coupling
 from .instance_tables import overridden, read
 from .instances import Instance
-from .settings import KEYS, LAGGED, UNIFORM, Times, replaced, settings_of, texts_in, toml
+from .settings import KEYS, LAGGED, Times, replaced, settings_of, texts_in, toml
 from .tolerances import ends_of
 from .wiring import drives_of, wires_of
 
@@ -27,8 +27,7 @@ class Scene:
     """A scene, checked against the FMUs it uses: every name is known, every value in SI and in bounds.
 
     A period is a revolution of the main shaft, or a second in a scene that runs by seconds and has a `step`:
-    the run takes `periods` of them, from `start_time` [s] on. `coupling` is how loops are closed, `grid`
-    where the steps are, with `coarse_steps_per_revolution` outside of the windows that the claims look into.
+    the run takes `periods` of them, from `start_time` [s] on. `coupling` is how loops are closed.
     With an `accuracy` a run chooses its steps. `file` or the system package `package` is what it was read
     from, `package_sha256` is the package's, `texts` are those of the other files that its text names,
     `overrides` the values that differ from it, `notes` what the user is to be warned of. `tolerances` are the
@@ -54,8 +53,6 @@ class Scene:
     step: float | None = None
     start_time: float = 0.0
     coupling: str = LAGGED
-    grid: str = UNIFORM
-    coarse_steps_per_revolution: int = 24
     accuracy: float | None = None
     isolated: bool | None = None
     may_end: bool = False

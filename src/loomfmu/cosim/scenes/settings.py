@@ -12,20 +12,19 @@ from ...errors import LoomfmuError, check_text, listed, shown, suggestion, withi
 from ...own.declared import ISOLATED
 from .tolerances import tolerances_of
 
-COARSE = "coarse_steps_per_revolution"
 ACCURACY = "accuracy"  # which chooses the steps
 MAY_END = "may_end"  # whether an FMU may end the run early
-TIMES = ("revolutions", "steps_per_revolution", "duration", "step")
+STEPS = "steps_per_revolution"
+TIMES = ("revolutions", STEPS, "duration", "step")
 # keys of the scene itself that can be set beside its times
-WHOLE = (ACCURACY, "grid", COARSE, "coupling", ISOLATED, MAY_END, "step_timeout", "run_timeout")
+WHOLE = (ACCURACY, "coupling", ISOLATED, MAY_END, "step_timeout", "run_timeout")
 KEYS = (
     *("title", "description", *TIMES, *WHOLE, "record", "loom", "wires", "inputs", "units"),
     *("claims", "tolerances"),
 )
 LAGGED, ITERATED = COUPLINGS = ("lagged", "iterated")
-UNIFORM, WINDOWS = GRIDS = ("uniform", "windows")
 MOST_STEPS = 1e9  # in a revolution
-CHOSEN = ("steps_per_revolution", "grid", COARSE)  # what an accuracy chooses
+GONE = ("grid", "coarse_steps_per_revolution")  # keys that scenes once had
 # what files are: the command that takes each kind, and keys that tell it from the others
 KINDS = {
     "scene": ("run", {"revolutions", "duration", "record", "loom", "shaft", "wires", "inputs", "claims"}),
@@ -90,9 +89,16 @@ def dotted(table: dict[str, Any], prefix: str = "") -> dict[str, Any]:
 
 def replaced(keys: Collection[str]) -> tuple[str, ...]:
     """The keys of a scene that give way to these: an accuracy replaces steps, and steps an accuracy."""
-    if ACCURACY in keys:
-        return CHOSEN
-    return (ACCURACY,) if any(key in keys for key in CHOSEN) else ()
+    return (STEPS,) if ACCURACY in keys else (ACCURACY,) if STEPS in keys else ()
+
+
+def refuse_gone(key: str) -> None:
+    """Refuse a key that scenes once had. Raises LoomfmuError, which says what to do instead."""
+    if key in GONE:
+        raise LoomfmuError(
+            f"{key} is no longer a key: all steps are equal, and few suffice where claims are judged by the"
+            f" mechanisms' own functions; remove it, or set {ACCURACY}"
+        )
 
 
 def _check_kind(tables: Mapping[str, Any], wanted: str) -> None:
@@ -131,7 +137,6 @@ def settings_of(
         "claims": _claims(tables.get("claims", [])),
         "tolerances": tolerances_of(tables.get("tolerances", {})),
         "coupling": choice(tables, "coupling", COUPLINGS) if "coupling" in tables else None,
-        "grid": choice(tables, "grid", GRIDS),
         "accuracy": _accuracy(tables, times),
         **{key: read(tables[key], key) for key, read in READERS.items() if key in tables},
     }
@@ -163,11 +168,8 @@ def _accuracy(tables: dict[str, Any], times: Times) -> float | None:
     """The accuracy that chooses the steps. Raises LoomfmuError beside what it chooses, or without claims."""
     if ACCURACY not in tables:
         return None
-    for key in CHOSEN:
-        if key in tables:
-            raise LoomfmuError(
-                f"{ACCURACY} and {key} are both given: {ACCURACY} chooses the steps; remove one"
-            )
+    if STEPS in tables:
+        raise LoomfmuError(f"{ACCURACY} and {STEPS} are both given: {ACCURACY} chooses the steps; remove one")
     if times.step is not None:
         raise LoomfmuError(
             f"{ACCURACY} chooses the steps in a revolution, but the scene runs by seconds; remove it"
@@ -303,7 +305,6 @@ def seconds(given: Any, key: str, low: float) -> float:
 
 # the keys that say one thing each, and how they are read; a scene has their defaults
 READERS: Readers = {
-    COARSE: lambda given, key: int(number(given, key, 1, 1e9, whole=True)),
     ISOLATED: truth,
     MAY_END: truth,
     "step_timeout": lambda given, key: seconds(given, key, 1e-3),

@@ -24,7 +24,7 @@ from ..scenes.graph import LATEST
 from ..scenes.instance_tables import overridden, override, prevailing, state_units, unit_of
 from ..scenes.instances import TOLERANCE, Instance, check_name
 from ..scenes.scene import Scene, assemble
-from ..scenes.settings import DEEPEST, TIMES, UNIFORM, toml
+from ..scenes.settings import DEEPEST, TIMES, toml
 from .connections import Nets
 from .package import Package
 from .structure import Node, connectors, joining, stated_by, structure, systems
@@ -96,8 +96,6 @@ class _Reader:
         wires = nets.wires
         if text and text.get("claims") and any(transformed(each, "") != SAME for each in self.root.iter()):
             raise LoomfmuError("a connection transforms its value, so the claims cannot be judged")
-        if self.start_time and overrides.get("grid", UNIFORM) != UNIFORM:
-            raise LoomfmuError(f"it starts at {self.start_time:g} s, so that it runs on a uniform grid alone")
         tables = self._foreign_tables() if annotation is None else _our_tables(text or {}, annotation)
         if text is not None:
             for instance in instances.values():

@@ -213,27 +213,3 @@ static void judge_dwell_contains(struct run *run, const struct call *call, struc
             note(run, answer, text(run, "its frame: %.4g %%", 100.0 * farthest.value), PLAIN);
     }
 }
-
-static void look_beyond(struct run *run, const struct call *call, bool dwells, struct times *times)
-{
-    struct motion *lift = curve(run, signal_of(call, 0));
-    const double distance = distance_of(call, dwells);
-    add_all(run, times, crossings_of(lift, distance));
-    add_all(run, times, crossings_of(lift, call->number[1] - distance));
-}
-
-static void look_at_dwells(struct run *run, const struct call *call, struct times *times)
-{
-    look_beyond(run, call, true, times);
-}
-
-static void look_at_sheds(struct run *run, const struct call *call, struct times *times)
-{
-    look_beyond(run, call, false, times);
-}
-
-static void look_at_turns(struct run *run, const struct call *call, struct times *times)
-{
-    for (ptrdiff_t place = 2; place < call->numbers; place++)
-        add_all(run, times, times_at(run, call->number[place]));
-}

@@ -234,15 +234,3 @@ static void judge_locks(struct run *run, const struct call *call, struct answer 
     note_unknown(run, answer, speed);
     note_coarse(run, answer, fastest);
 }
-
-static void look_at_passes(struct run *run, const struct call *call, struct times *times)
-{
-    struct stretches within = times_within(run, window_of(call->number + 1));
-    for (ptrdiff_t place = 0; place < within.count; place++)
-        add_time(run, times, within.list[place].start);
-}
-
-static void look_at_meetings(struct run *run, const struct call *call, struct times *times)
-{
-    add_all(run, times, crossings_of(curve(run, signal_of(call, 0)), call->number[1]));
-}

@@ -183,15 +183,11 @@ static ptrdiff_t handed(struct times found, double *times, ptrdiff_t room)
     return found.count;
 }
 
-/* Times at which a question looks. */
-EXPORT(landings) ptrdiff_t landings(struct run *run, const double *question, double *times, ptrdiff_t room)
+/* Times at which a signal passes a level. */
+EXPORT(passages) ptrdiff_t passages(struct run *run, int signal, double level, double *times, ptrdiff_t room)
 {
-    const struct call call = call_of(run, question, "");
     BEGIN(run, -1);
-    struct times found = {0, 0, NULL};
-    if (RULES[call.rule].looks != NULL)
-        RULES[call.rule].looks(run, &call, &found);
-    return handed(found, times, room);
+    return handed(crossings_of(curve(run, signal), level), times, room);
 }
 
 /* Times at which the shaft stands at an angle of its revolution. */

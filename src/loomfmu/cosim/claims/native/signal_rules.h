@@ -43,8 +43,8 @@ static struct extreme noted_extreme(struct run *run, struct answer *answer, int 
     return found;
 }
 
-/* ---- a signal on one side of a bound: the bound, 1 if at the samples, 1 if in a window, this and where it ends, 1 if the
- * bound is a speed that must not be negative */
+/* ---- a signal on one side of a bound: the bound, 1 if at the samples, 1 if in a window, this, 1 if the bound is a speed
+ * that must not be negative */
 
 struct judged { /* when a signal is judged, all the time or within, and when it is not known */
     bool always;
@@ -101,7 +101,7 @@ static struct extreme worst_of(struct run *run, const struct call *call, const s
 
 static void judge_bounded(struct run *run, const struct call *call, struct answer *answer)
 {
-    if (call->number[6] != 0.0 && answer->bound < 0.0) {
+    if (call->number[5] != 0.0 && answer->bound < 0.0) {
         found_nothing(run, answer, "the bound is negative, but a limit of speed is positive");
         return;
     }

@@ -21,6 +21,7 @@ struct stepped {
     void *component;
     const struct copy *copies;
     size_t copy_count;
+    size_t placed; /* 1 if it is placed at each time as at a start, and searches nothing on its way there */
 };
 
 /* An input that follows a table: its place, and its type as `ctypes` names it: d, q or ?. */
@@ -72,6 +73,10 @@ EXPORT void step_tangents(const struct tangents *plan, int64_t steps, const dual
             }
             if (step == 0) {
                 (void)part->part->initialize(part->component, (dual){0.0, steps > 0 ? starts->tangent : 0.0});
+            } else if (part->placed) {
+                const dual start = starts[step - 1], size = sizes[step - 1];
+                (void)part->part->initialize(
+                    part->component, (dual){start.value + size.value, start.tangent + size.tangent});
             } else {
                 (void)part->part->step(part->component, starts[step - 1], sizes[step - 1]);
             }

@@ -1,0 +1,292 @@
+"""Claims on what follows from the time alone: judged on the mechanisms' own functions, not between samples.
+
+Mechanisms without a memory, in turn, are one function of the time. Dual numbers give its value and its slope
+at any time, and these a cubic from one time to the next, with what it may be off by. Where a claim's worst
+value may lie, the step is divided until that is rounding. What is left is the error of the verdict.
+"""
+
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..components import COMPONENTS
+from ..declaring.upstream import sources_of, upstream
+from ..declaring.variables import MOTION, NOTHING
+from ..errors import LoomfmuError
+from ..traces import Signals, Verdict
+from ..traces.extended import RATE, Resampled
+from .claims.arguments import TURN, Window
+from .claims.claim import Claim
+from .claims.conditions import remembers
+from .claims.judging import run_of
+from .estimates import MOST_VALUES, undecided
+from .master.grid import grid_of_points, period
+from .planning.requested import SHAFT_ANGLE, Movements, Requested, output_port
+from .scenes.graph import step_order
+from .scenes.scene import Scene
+from .tangents import Tangents
+
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+FEWEST = 2  # steps, which show a slope of rates
+SHOWN = 180.0  # steps in a revolution, which show where extremes may lie
+PARTS, ROUNDS = 32, 8  # of a step that is divided, and how often: 1e12 parts
+NARROW = 1e-12  # of the run: steps that are divided no more, which may hold a jump
+EXACT, ROUNDED = 1e-11, 1e-14  # of the worst and of the largest value: what a cubic may be off by
+DOUBT = 0.25  # of the difference between second rates over a step, see `doubt` in curves.h
+EDGE = 1e-12  # rad: what rounding leaves of an edge of a window
+NEWTON = 4  # steps to the time at which a window begins or ends
+SHARE = 1e-12  # of value or bound: what rounding leaves
+
+
+class Composed:
+    """The claims of a scene that are judged so; `judged` judges them on a run."""
+
+    def __init__(self, requested: Requested, claims: Sequence[Claim]):
+        self._scene, self._requested = requested.scene, requested
+        self.claims = {number: each for number, each in enumerate(claims) if self._follows(each)}
+        wanted = requested.needed(self.claims.values(), ())
+        self._latches = {name: found for name in wanted if (found := self._held(name))}
+        bases = [base for base, _sign in self._latches.values()]
+        owners = {name.partition(".")[0] for name in wanted}
+        self._needed = upstream(owners, self._sources)
+        shown = [each for base in bases for each in self._windows(base)]
+        self._signals = [
+            name
+            for name in dict.fromkeys([*wanted, *bases, *shown])
+            if name not in self._latches and self._is_smooth(name)
+        ]
+        try:
+            self._tangents = Tangents(self._scene, self._signals) if self.claims else None
+        except LoomfmuError:  # without native FMUs
+            self.claims = {}
+
+    @property
+    def unrated(self) -> set[str]:
+        """The signals of these claims of which nothing else tells between samples."""
+        names = {name for claim in self.claims.values() for name in claim.signals(self._requested)}
+        ports = {name: output_port(self._scene, name, "claim") for name in names}
+        return {name for name, port in ports.items() if not (port.rate or any(port.beside))}
+
+    # ---- what follows from the time
+
+    def _follows(self, claim: Claim) -> bool:
+        """Return whether all that a claim judges follows from the time, by mechanisms of the package."""
+        scene, extremes = self._scene, [name for name, _sign in claim.extremes()]
+        if not extremes or scene.start_time:
+            return False
+        signals = claim.signals(self._requested)
+        owners = {each.partition(".")[0] for each in self._requested.needed([claim], ())}
+        needed = upstream(owners, self._sources)
+        components = [scene.instances[name].fmu.component for name in needed]
+        if not all(each and COMPONENTS.owns(each) and each.keeps != MOTION for each in components):
+            return False
+        if any(each.instance in needed for each in scene.drives) or needed & self._looped:
+            return False
+        sources = [".".join(wire.source) for wire in scene.wires if wire.sink[0] in needed]
+        whole = getattr(claim, "window", None) is None
+        held = {each for each in signals if whole and each in extremes and self._held(each)}
+        return all(each in held or self._is_smooth(each) for each in signals) and not any(
+            self._remembers(each) for each in sources
+        )
+
+    @cached_property
+    def _sources(self) -> Mapping[str, set[str]]:
+        return sources_of((wire.source[0], wire.sink[0]) for wire in self._scene.wires)
+
+    @cached_property
+    def _looped(self) -> set[str]:
+        """The instances that take values of the step before."""
+        _order, lagged = step_order(self._scene.instances, self._scene.wires)
+        return {wire.sink[0] for wire in lagged}
+
+    def _variable(self, signal: str) -> Any:
+        instance, _, variable = signal.partition(".")
+        facts = self._scene.instances[instance].fmu.facts
+        return facts.variables[variable] if facts else None
+
+    def _remembers(self, signal: str) -> bool:
+        component = self._scene.instances[signal.partition(".")[0]].fmu.component
+        return component is None or (component.keeps != NOTHING and remembers(self._variable(signal)))
+
+    def _is_smooth(self, signal: str) -> bool:
+        """Return whether an output is a real number that samples show."""
+        variable, port = self._variable(signal), output_port(self._scene, signal, "claim")
+        known = port.causality == "output" and port.kind == "Real" and not any(port.beside[:2])
+        return known and not variable.brief and not self._remembers(signal)
+
+    def _held(self, signal: str) -> tuple[str, float] | None:
+        """Return the output of which this one holds the lowest values, or with -1 the highest ones."""
+        variable = self._variable(signal)
+        for base, sign in ((variable.lowest_of, 1.0), (variable.highest_of, -1.0)):
+            name = f"{signal.partition('.')[0]}.{base}"
+            if base and variable.type is float and self._is_smooth(name):
+                return name, sign
+        return None
+
+    def _windows(self, signal: str) -> list[str]:
+        """Return the outputs that are all positive where the extremes of an output lie."""
+        instance = signal.partition(".")[0]
+        component = self._scene.instances[instance].fmu.component
+        return [f"{instance}.{each}" for each in component.windows] if component else []
+
+    # ---- verdicts
+
+    def judged(self, scene: Scene, run: Signals) -> dict[int, Verdict]:
+        """Judge the claims on a run of this scene, which differs in values alone, by their numbers."""
+        if not self.claims:
+            return {}
+        times = self._equal(scene, run)
+        if len(times) * len(self._signals) > MOST_VALUES:
+            why = "numerical error not estimated: the run is too long"
+            return {number: undecided(claim.judge(run), why) for number, claim in self.claims.items()}
+        samples, left = self._divided(scene, run, times)
+        return {
+            number: claim.settled(samples, claim.judge(samples), 0.0, SHARE, 0.0, left[number])
+            for number, claim in self.claims.items()
+        }
+
+    def _divided(self, scene: Scene, run: Signals, times: Floats) -> tuple[Resampled, dict[int, float]]:
+        """Return samples that show the worst values of all claims, and how far these may be off."""
+        jets = self._at(scene, np.union1d(times, self._worst_samples(run)))
+        jets = jets.with_more(self._at(scene, self._edges(scene, self._samples(run, jets))))
+        left, unsure = dict[int, float](), [*self.claims]
+        for _ in range(ROUNDS):
+            samples, doubtful = self._samples(run, jets), np.zeros(len(jets.time) - 1, dtype=bool)
+            for number in [*unsure]:
+                cells, left[number] = self._doubtful(self.claims[number], samples)
+                doubtful |= cells
+                if not cells.any():
+                    unsure.remove(number)
+            if not unsure:
+                break
+            jets = jets.with_more(self._at(scene, _parts(jets.time, doubtful)))
+        return samples, left
+
+    def _equal(self, scene: Scene, run: Signals) -> Floats:
+        """Return times that show how all mechanisms move; too many for the memory where that is so."""
+        movements, end = Movements(self._requested), float(run.time[-1])
+        steps = [movements.longest_step(scene, name)[0] for name in self._needed]
+        count = end / min([period(scene) / SHOWN, *(each for each in steps if each)])
+        return np.linspace(0.0, end, int(np.ceil(np.clip(count, FEWEST, MOST_VALUES))) + 1)
+
+    def _worst_samples(self, run: Signals) -> Floats:
+        """Return the times of the run's own worst samples: no verdict is better than what it shows."""
+        places = []
+        for claim in self.claims.values():
+            at, _within = _inside(_window(claim), run)
+            for its, name, sign in claim.motions(run):
+                _base, sign = self._latches.get(name, (name, sign))
+                if at.any():
+                    places.append(int(np.argmin(np.where(at, sign * its[name], np.inf))))
+        found: Floats = run.time[places]
+        return found
+
+    def _at(self, scene: Scene, times: Floats) -> "Jets":
+        """Return all signals at some times, in order."""
+        assert self._tangents is not None
+        points = np.concatenate([[0.0], times[times > 0.0]])
+        found = self._tangents.rates(scene, grid_of_points(scene, points)) if len(points) > 1 else {}
+        rows = [np.stack(found[name], axis=1) for name in self._signals] if found else []
+        return Jets(points, np.stack(rows, axis=1) if rows else np.empty((0, len(self._signals), 2)))
+
+    def _samples(self, run: Signals, jets: "Jets") -> Resampled:
+        """Return the run with these samples of its signals."""
+        made = {name: jets.rows[:, place, 0] for place, name in enumerate(self._signals)}
+        rates = {name: RATE + name for name in made}
+        made |= {rates[name]: jets.rows[:, place, 1] for place, name in enumerate(self._signals)}
+        for latch, (base, sign) in self._latches.items():
+            made[latch] = sign * np.minimum.accumulate(sign * made[base])
+        return Resampled(run, jets.time, made, rates)
+
+    def _edges(self, scene: Scene, samples: Resampled) -> Floats:
+        """Return the times at which windows of claims begin and end."""
+        windows = [window for claim in self.claims.values() if (window := _window(claim))]
+        edges = {edge for window in windows for edge in (window.start, window.start + window.width)}
+        found = [np.empty(0)]
+        for edge in edges if SHAFT_ANGLE in samples else ():
+            times = np.array(sorted(run_of(samples).stands_at(edge)))
+            for _ in range(NEWTON if len(times) else 0):
+                angle, speed = self._at(scene, times).rows[-len(times) :, self._signals.index(SHAFT_ANGLE)].T
+                off = (angle - edge + 0.5 * TURN) % TURN - 0.5 * TURN
+                times = times - np.divide(off, speed, where=speed != 0.0, out=np.zeros(len(times)))
+            found.append(times)
+        return np.clip(np.unique(np.concatenate(found)), 0.0, samples.time[-1])
+
+    def _doubtful(self, claim: Claim, samples: Resampled) -> tuple[Flags, float]:
+        """Return the steps that may hold the worst value of a claim, and how far that may be off."""
+        time, (at, within) = samples.time, _inside(_window(claim), samples)
+        wide = np.diff(time) > NARROW * time[-1]
+        doubtful, off = np.zeros(len(wide), dtype=bool), 0.0
+        for run, name, sign in claim.motions(samples):
+            base, sign = self._latches.get(name, (name, sign))
+            rate = run.rate(base)
+            if rate is None or not at.any():
+                continue
+            lowest, best = _lowest(time, sign * run[base], sign * run[rate]), np.min(sign * run[base][at])
+            left = np.max(best - lowest, where=within & wide, initial=0.0)
+            most = EXACT * abs(best) + ROUNDED * np.max(np.abs(run[base]))
+            doubtful |= within & wide & (best - lowest > most)
+            off = max(off, float(left), float(most))
+            if name in self._latches:
+                doubtful |= wide & self._hidden(base, samples)
+        return doubtful, off
+
+    def _hidden(self, signal: str, samples: Resampled) -> Flags:
+        """Return the steps within which alone an output may be where its extremes lie."""
+        inside, may_be = np.ones(len(samples.time), dtype=bool), np.ones(len(samples.time) - 1, dtype=bool)
+        names = self._windows(signal)
+        for name in names:
+            values, rates = samples[name], samples[RATE + name]
+            inside &= values > 0.0
+            may_be &= -_lowest(samples.time, -values, -rates) > 0.0
+        return may_be & ~inside[:-1] & ~inside[1:] & bool(names)
+
+
+class Jets(NamedTuple):
+    """Values and rates of signals at some times: rows of shape (times, signals, 2)."""
+
+    time: Floats
+    rows: Floats
+
+    def with_more(self, more: "Jets") -> "Jets":
+        """Return these and more of them, in order."""
+        time, rows = (np.concatenate(each) for each in zip(self, more, strict=True))
+        time, places = np.unique(time, return_index=True)
+        return Jets(time, rows[places])
+
+
+def _window(claim: Claim) -> Window | None:
+    window: Window | None = getattr(claim, "window", None)
+    return window
+
+
+def _inside(window: Window | None, samples: Signals) -> tuple[Flags, Flags]:
+    """Return which samples lie in a window, edges included, and which steps do."""
+    angle = samples.shaft_angle
+    if window is None:
+        return np.ones(len(angle), dtype=bool), np.ones(len(angle) - 1, dtype=bool)
+    at = (angle - window.start + EDGE) % TURN <= window.width + 2.0 * EDGE
+    return at, (0.5 * (angle[1:] + angle[:-1]) - window.start) % TURN < window.width
+
+
+def _parts(times: Floats, cells: Flags) -> Floats:
+    """Return the times that divide some steps into parts."""
+    shares = np.arange(1, PARTS) / PARTS
+    found: Floats = (times[:-1][cells, None] + np.diff(times)[cells, None] * shares).ravel()
+    return found
+
+
+def _lowest(time: Floats, values: Floats, rates: Floats) -> Floats:
+    """Return what a motion does not go below on each step: its cubic, less what that may be off by."""
+    h, bends = np.diff(time), np.gradient(rates, time, edge_order=2)
+    rise, v0, v1 = np.diff(values), rates[:-1] * h, rates[1:] * h
+    before = np.abs(bends[:-1] * h * h - (6.0 * rise - 4.0 * v0 - 2.0 * v1))
+    after = np.abs(bends[1:] * h * h - (2.0 * v0 + 4.0 * v1 - 6.0 * rise))
+    points = values[:-1], values[:-1] + v0 / 3.0, values[1:] - v1 / 3.0, values[1:]
+    found: Floats = np.minimum.reduce(points) - DOUBT * np.maximum(before, after)
+    return found
