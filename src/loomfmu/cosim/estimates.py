@@ -77,11 +77,22 @@ class Estimates:
         self._run, self._signals, self._deciders = run, signals, deciders
         # what is kept of a run, beside what claims need, to tell whether steps are short enough
         self.shown = (*self._dependence.counters, *self._angles)
+        self.methods = self._dependence.methods
 
     @property
     def own_claims(self) -> range:
         """The claims of the scene, counted from 0: all but those that only decide others."""
         return range(len(self.claims) - len(self._deciders))
+
+    @property
+    def moved(self) -> Mapping[str, Collection[str]]:
+        """The instances that steps may be too long for, each with the signals of the angles that move it."""
+        return self._dependence.angles
+
+    @property
+    def angles(self) -> list[str]:
+        """The signals of all angles whose speeds matter."""
+        return list(self._angles)
 
     @property
     def _angles(self) -> dict[str, None]:
@@ -246,16 +257,20 @@ def _settled(verdict: Verdict, coarsest: float, longer: float, length: str) -> V
 
 def _scale(scene: Scene, verdict: Verdict) -> float:
     """The largest of a verdict's numbers and what is usual for its signal: a bound may be near 0."""
-    named = (each.partition(".") for each in re.findall(r"\w+\.\w+", verdict.signal))
+    return max(abs(verdict.bound), abs(verdict.worst), usual(scene, verdict.signal, verdict.unit))
+
+
+def usual(scene: Scene, signal: str, unit: str) -> float:
+    """Return the usual size of a signal that a verdict in a unit names, or the largest of several."""
+    named = (each.partition(".") for each in re.findall(r"\w+\.\w+", signal))
     ports = (
         scene.instances[name].fmu.ports.get(variable)
         for name, _, variable in named
         if name in scene.instances
     )
-    usual = (
-        port.nominal or float(verdict.unit == "1") for port in ports if port and port.unit == verdict.unit
+    return max(
+        (port.nominal or float(unit == "1") for port in ports if port and port.unit == unit), default=0.0
     )
-    return max(abs(verdict.bound), abs(verdict.worst), *usual)
 
 
 def _noted(verdict: Verdict, note: str) -> Verdict:

@@ -34,6 +34,7 @@ _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {  # results and arguments
     "run_beside": (None, [_Place, *[_Int] * 6, _Text]),
     "rule_of": (_Int, [_Text]),
     "run_note": (_Text, [_Place]),
+    "run_renew": (None, [_Place]),
     "judge": (_Yes, [_Place, _Place, _Text, _Place]),
     "settle": (_Yes, [_Place, _Place, _Place, *[_Real] * 4]),
     "model_error": (_Real, [_Place, _Place, _Place]),
@@ -117,6 +118,7 @@ class Run:
         self._table: Table = {}
         time, text = trace.columns([])[0], trace.cut_short.encode()
         self._kept: list[Any] = [time, text]
+        self.made: dict[str, Floats] = {}  # what C reads of signals that are not kept as real numbers
         self._samples = len(time.values)
         self._run = self._library.run_new(self._samples, time.place, time.values.strides[0], text)
         if not self._run:
@@ -131,25 +133,20 @@ class Run:
         """Return the verdict on a claim that asks this question, and may have a name."""
         found, words = _Found(), question.words.encode()
         _check(self._library.judge(self._run, self._list(trace, question), words, found))
-        values = [math.nan if math.isnan(each) else each for each in found]
-        holds, decided, number, bound, worst, time, angle, revolution, error, *_rest, between = values
-        form = question.forms[int(number)]
-        return Verdict(
-            f"{name}: {form.text}" if name else form.text,
-            form.signal,
-            holds > 0.0,
-            bound,
-            worst,
-            *form.unit,
-            time,
-            angle,
-            None if math.isnan(revolution) else int(revolution),
-            self._library.run_note(self._run).decode(),
-            sense=form.sense,
-            error=error,
-            decided=decided > 0.0,
-            between=between,
-        )
+        return verdict_of(found[:], question.forms, name, self._library.run_note(self._run).decode())
+
+    def question(self, trace: Signals, question: Question) -> tuple[Any, dict[int, str]]:
+        """Return a question as the rules take it, and the parameters in it by their places."""
+        written = self._written(trace, question)
+        named = {place: each for place, each in enumerate(written) if isinstance(each, str)}
+        return _filled(trace, written), named
+
+    @property
+    def rules(self) -> tuple[tuple[int, int, int], int]:
+        """The addresses of the functions that judge, forget what was found, tell the note; and of the run."""
+        functions = (self._library[name] for name in ("judge", "run_renew", "run_note"))
+        judge, renew, note = (ctypes.cast(each, _Place).value or 0 for each in functions)
+        return (judge, renew, note), int(self._run)
 
     def settled(self, trace: Signals, question: Question, verdict: Verdict, *changes: float) -> Verdict:
         """Return a verdict with its error; `changes` are what `settle` of judge.h takes after the verdict."""
@@ -185,11 +182,12 @@ class Run:
 
     def _list(self, trace: Signals, question: Question) -> Any:
         """Return a question as the rules take it. Raises LoomfmuError for a missing signal or parameter."""
+        return _filled(trace, self._written(trace, question))
+
+    def _written(self, trace: Signals, question: Question) -> list[float | str]:
         if missing := [signal for signal in question.signals if signal and signal not in trace]:
             trace.columns(missing)  # which says so
-        written = question.written(trace, lambda signal: self._number(trace, signal))
-        numbers = [trace.parameter(each) if isinstance(each, str) else each for each in written]
-        return (_Real * len(numbers))(*numbers)
+        return question.written(trace, lambda signal: self._number(trace, signal))
 
     def _number(self, trace: Signals, signal: str) -> int:
         """Return the number of a signal, -1 for anything else; it is added with all signals beside it."""
@@ -199,6 +197,8 @@ class Run:
         for name in new:
             named, column = name.encode(), trace.columns([name])[1]
             self._kept += (named, column)
+            if not trace.is_real(name):
+                self.made[name] = column.values
             if self._library.run_add(self._run, named, column.place, column.values.strides[0]) < 0:
                 raise MemoryError
         for name in new:
@@ -234,6 +234,35 @@ def run_of(trace: Signals) -> Run:
         kept[Run] = Run(trace)
     found: Run = kept[Run]
     return found
+
+
+def verdict_of(numbers: Sequence[float], forms: Sequence[Form], name: str, note: str) -> Verdict:
+    """Return a verdict from its `FIELDS`, in one of these forms; its claim may have a name."""
+    values = [math.nan if math.isnan(each) else each for each in numbers]
+    holds, decided, number, bound, worst, time, angle, revolution, error, *_rest, between = values
+    form = forms[int(number)]
+    return Verdict(
+        f"{name}: {form.text}" if name else form.text,
+        form.signal,
+        holds > 0.0,
+        bound,
+        worst,
+        *form.unit,
+        time,
+        angle,
+        None if math.isnan(revolution) else int(revolution),
+        note,
+        sense=form.sense,
+        error=error,
+        decided=decided > 0.0,
+        between=between,
+    )
+
+
+def _filled(trace: Signals, written: Sequence[float | str]) -> Any:
+    """Return the list of numbers for C. Raises LoomfmuError for a missing parameter."""
+    numbers = [trace.parameter(each) if isinstance(each, str) else each for each in written]
+    return (_Real * len(numbers))(*numbers)
 
 
 def _numbers_of(verdict: Verdict, question: Question) -> Any:

@@ -12,7 +12,7 @@ PENDING = 5  # of FMI 2.0: it goes on with a step in the background
 REFUSED = 1000  # not a status of FMI: a value was not handed over, since it would have become another one
 
 # what a compiled call does, as stepper.c numbers it
-VALUES, STEP, SET_3, GET_3, STEP_3, CONVERT = range(6)
+VALUES, STEP, SET_3, GET_3, STEP_3, CONVERT, SET_UP, PLAIN = range(8)
 # the FMI 3.0 types that differ from the master's own, as stepper.c numbers them
 CONVERTED = (
     *("Float32", "Boolean", "Int8", "Int16", "Int64"),

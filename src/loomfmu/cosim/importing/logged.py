@@ -18,12 +18,14 @@ class Logged:
         self.messages: list[tuple[int, str]] = []
         self._left_out = 0  # earlier messages
         self.logged = ctypes.c_int64()  # warnings so far, left out or not
+        self.heard = ctypes.c_int64()  # messages so far, of an FMU of ours
         self._silent: dict[str, Silent] = {}  # of each function
 
     def _log(
         self, _environment: Any, _instance: bytes, status: int, _category: bytes, message: bytes
     ) -> None:
         self.logged.value += status == WARNING
+        self.heard.value += 1
         text = (message or b"").decode(errors="replace")
         self.messages.append((status, text.partition("\n")[2] if text.startswith(PYTHONFMU) else text))
 

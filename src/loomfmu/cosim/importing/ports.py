@@ -144,13 +144,20 @@ class Port:
             given = given.strip().removesuffix(self.unit)
         return units.parse(given, "1")
 
+    @property
+    def range(self) -> tuple[float, float]:
+        """The lowest and the highest value that it takes."""
+        low, high = RANGES.get(self.base_type, (-math.inf, math.inf))
+        return (
+            low if self.minimum is None else max(low, self.minimum),
+            high if self.maximum is None else min(high, self.maximum),
+        )
+
     def _within(self, value: float, where: str) -> Value:
         if self.numbers and value not in self.numbers:
             found = shown(value) if isinstance(value, int) else f"{value:.7g}"
             raise LoomfmuError(f"{where} = {found} must be {numbered(self.choices, self.numbers)}")
-        low, high = RANGES.get(self.base_type, (-math.inf, math.inf))
-        low = low if self.minimum is None else max(low, self.minimum)
-        high = high if self.maximum is None else min(high, self.maximum)
+        low, high = self.range
         if not low <= value <= high or abs(value) == math.inf:
             factor = units.unit(self.display).factor
             unit = self.unit if self.display == "1" else self.display

@@ -231,6 +231,37 @@ class Slave(Logged):
         )
         return [Call(function, arguments, name, compiled)]
 
+    def start_calls(self, names: tuple[str, ...], experiment: int) -> list[Compiled]:
+        """The calls of `start` for values of these names, kept where `places_of` says.
+
+        The start and the end of the experiment are at an address.
+        """
+        limited, tolerance = (each.value for each in self._tolerance())
+        set_up = self.plain_call("SetupExperiment", calls.SET_UP)
+        set_up.values, set_up.type, set_up.low = experiment, limited, tolerance
+        found = [set_up]
+        for each in self._settings_of(names):
+            call = self.plain_call(each.function, calls.VALUES)
+            call.references, call.count = ctypes.addressof(each.references), each.size.value
+            call.values = ctypes.addressof(each.values)
+            found.append(call)
+        return [*found, self.plain_call("EnterInitializationMode")]
+
+    def places_of(self, variable: str) -> list[tuple[int, bool]]:
+        """Return from where `start_calls` take the value of a variable, if they do, and whether it is whole."""
+        found = []
+        for each in self._settings_of(next(iter(self._settings))):
+            if variable in each.names:
+                size = ctypes.sizeof(each.values) // len(each.values)
+                place = ctypes.addressof(each.values) + each.names.index(variable) * size
+                found.append((place, each.function != "SetReal"))
+        return found
+
+    def plain_call(self, name: str, kind: int = calls.PLAIN) -> Compiled:
+        """A call of a function by its name, which takes the instance alone."""
+        function = self._library[f"{self.standard}{name}"]
+        return Compiled(kind, calls.address(function), self._component)
+
     def step_call(self, time: ctypes.c_double, step_size: ctypes.c_double) -> Call:
         """`fmi2DoStep` over the step that `time` and `step_size` hold when it is called."""
         function = self._library["fmi2DoStep"]
@@ -320,6 +351,11 @@ class Slave(Logged):
         except FMICallException:
             pass
         return False
+
+    def renew(self) -> None:
+        """Reset it in the midst of a run: another one starts it by the calls of `start_calls`."""
+        self._call("Reset")
+        self.started = False
 
     def free(self) -> None:
         """Free the instance, unless it ended fatally: then that is not allowed."""

@@ -75,8 +75,8 @@ class Master:
         self.scene = scene
         self.grid = grid or uniform(scene)
         self.order, self.lagged = step_order(scene.instances, scene.wires)
-        self._signals = Signals(scene, self.order, fetched, dict(shafts or {}))
-        self.slots = self._signals.slots
+        self.signals = Signals(scene, self.order, fetched, dict(shafts or {}))
+        self.slots = self.signals.slots
         self.slaves: dict[str, Slave] = {}
         self._ours = all(instance.fmu.trusted for instance in scene.instances.values())
         self.interrupted = ctypes.c_int32(0)
@@ -92,7 +92,7 @@ class Master:
     def loaded(self, scene: Scene, grid: Grid, shafts: Mapping[str, ConstantShaft]) -> "Master":
         """For the next run: the same scene with other values, and another grid."""
         self.scene, self.grid = scene, grid
-        self._signals.shafts = shafts
+        self.signals.shafts = shafts
         return self
 
     def __enter__(self) -> "Master":
@@ -144,7 +144,7 @@ class Master:
             raise
 
     def _initialize(self) -> None:
-        signals = self._signals
+        signals = self.signals
         for name, slave in self.slaves.items():
             slave.start(self.scene.instances[name].values, self.grid.stop_time, self.grid.start)
         signals.begin(self.grid.start)
@@ -160,9 +160,15 @@ class Master:
         lasts = all(slave.pooled and slave.keeps_calls for slave in self.slaves.values())
         self._calls = calls if lasts and not self.lagged else None
 
+    @property
+    def value_calls(self) -> tuple[dict[str, list[Action]], dict[str, list[Action]]]:
+        """The calls that hand over the inputs of each instance, and its outputs, once it is initialized."""
+        calls = self._prepared()
+        return calls.inputs, calls.outputs
+
     def _prepared(self) -> "_Calls":
         """The calls that hand over inputs and outputs: those of the run before for the same instances."""
-        slaves, signals = list(self.slaves.values()), self._signals
+        slaves, signals = list(self.slaves.values()), self.signals
         if self._calls and all(a is b for a, b in zip(self._calls.slaves, slaves, strict=True)):
             return self._calls
         return _Calls(
@@ -173,7 +179,7 @@ class Master:
 
     def _make_stepper(self, calls: "_Calls") -> Stepper:
         """Return the stepper that makes the calls of all instances in their order."""
-        signals = self._signals
+        signals = self.signals
         memory = Memory(
             signals.reals,
             signals.integers,
@@ -208,13 +214,13 @@ class Master:
         """
         times = np.empty(rows)
         values = Rows(
-            np.empty((rows, len(self._signals.reals))),
-            np.empty((rows, len(self._signals.integers)), dtype=np.int32),
+            np.empty((rows, len(self.signals.reals))),
+            np.empty((rows, len(self.signals.integers)), dtype=np.int32),
         )
         times[0], values.reals[0], values.integers[0] = (
             self.grid.start,
-            self._signals.reals,
-            self._signals.integers,
+            self.signals.reals,
+            self.signals.integers,
         )
         handed, filled, step = 0, 1, 0
         due = perf_counter() + HOLD
@@ -250,12 +256,12 @@ class Master:
 
     def _advance(self, span: Span, rows: Rows) -> tuple[int, LoomfmuError | None]:
         """Take the steps of a span, write a row for each; how many were taken, and why not all."""
-        driven = self._signals.driven(span.turns)
+        driven = self.signals.driven(span.turns)
         with self._directory_kept():
             taken, failure = self._stepper.advance(span, driven, rows)
         if failure is None and taken and (reason := self._limits.passed):
             failure = LoomfmuError(f"{self.scene.name} at {span.ends[taken - 1]:.9g} s: {reason}")
-        self._signals.turn_shafts((span.starts + span.sizes)[:taken], rows.reals[:taken])
+        self.signals.turn_shafts((span.starts + span.sizes)[:taken], rows.reals[:taken])
         return taken, failure
 
     def _hand_over(self, times: Reals, reals: Reals, integers: Integers, write: Block) -> None:

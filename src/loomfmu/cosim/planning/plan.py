@@ -73,15 +73,19 @@ class Stepping:
             master.initialize()
             yield master
 
+    def recording(self, plan: Plan) -> Recording:
+        """Return an empty recording of a run."""
+        running = plan.pruned.scene
+        kinds = {name: instance.fmu.name for name, instance in running.instances.items()}
+        return Recording(
+            plan.scene.name, self.channels, plan.effective.value, plan.wires, kinds, own_speeds(running)
+        )
+
     def in_memory(self, scene: Scene, grid: Grid) -> "InMemory":
         """Run a scene, which differs in values alone, and keep the signals in memory."""
         plan = self.plan(scene, grid)
         with self.stepped(plan) as master:
-            running = plan.pruned.scene
-            kinds = {name: instance.fmu.name for name, instance in running.instances.items()}
-            recording = Recording(
-                scene.name, self.channels, plan.effective.value, plan.wires, kinds, own_speeds(running)
-            )
+            recording = self.recording(plan)
             try:
                 record(master, recording, lambda _step: None, grid.steps + 1)
             except Interrupted:

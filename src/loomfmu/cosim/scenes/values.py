@@ -1,6 +1,6 @@
 """Other values for a scene that was read: where nothing else depends on them, it is not read again."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 from ...components.shaft_driven import FOLLOWING
@@ -76,15 +76,11 @@ class Values:
                 changed[name] = altered(old, values=dict(old.values), doubts=dict(old.doubts))
             return changed[name]
 
-        own: set[tuple[str, str]] = set()
-        for key, name, variable in prevailing(overrides, self.targets):
-            if key in values:
-                copied(name).set(variable, values[key])
-                own.add((name, variable))
-        for name, each in self.scene.instances.items():
-            for parameter, owner in each.inherited.items():
-                if owner in own and (name, parameter) not in own:
-                    copied(name).take(parameter, changed)
+        taken = self.taken(values, overrides)
+        for (name, variable), key in taken.items():
+            copied(name).set(variable, values[key])
+        for name, parameter in self.inheriting(taken):
+            copied(name).take(parameter, changed)
         for name, each in changed.items():
             if any(each.doubts.values()) or any(self.scene.instances[name].doubts.values()):
                 return None  # its values change what the scene warns of
@@ -92,3 +88,20 @@ class Values:
         if "shaft" in changed and "speed" in scene.instances["shaft"].fmu.ports:
             check_times(scene.times, scene.speed)
         return scene
+
+    def taken(self, keys: Collection[str], overrides: Collection[str]) -> dict[tuple[str, str], str]:
+        """The variables that take the values of some keys, out of all overrides, and the key of each.
+
+        Raises LoomfmuError where two keys set the same one.
+        """
+        found = prevailing(overrides, self.targets)
+        return {(name, variable): key for key, name, variable in found if key in keys}
+
+    def inheriting(self, own: Collection[tuple[str, str]]) -> list[tuple[str, str]]:
+        """The parameters that have the values of some variables, though not their own ones."""
+        return [
+            (name, parameter)
+            for name, each in self.scene.instances.items()
+            for parameter, owner in each.inherited.items()
+            if owner in own and (name, parameter) not in own
+        ]

@@ -175,6 +175,16 @@ EXPORT(model_error) double model_error(struct run *run, const double *question, 
 
 #ifndef __wasm__
 
+/* Forget all that was found, since the samples are those of another run. */
+EXPORT(run_renew) void run_renew(struct run *run)
+{
+    release(&run->scratch);
+    release(&run->kept);
+    run->note = "";
+    for (int signal = 0; signal < run->count; signal++)
+        memset(run->signals[signal].motions, 0, sizeof run->signals[signal].motions);
+}
+
 /* Hand over as many times as there is room for; returns their number, -1 where no memory is left. */
 static ptrdiff_t handed(struct times found, double *times, ptrdiff_t room)
 {

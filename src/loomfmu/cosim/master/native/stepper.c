@@ -17,7 +17,8 @@
 #include "../../../fmi/native/shell/broyden.h"
 #include "tangents.h"
 
-enum { VALUES, STEP, SET_3, GET_3, STEP_3, CONVERT }; /* what a call does: FMI 2.0, FMI 3.0, on a wire */
+/* what a call does: FMI 2.0, FMI 3.0, on a wire, FMI 2.0 before the steps */
+enum { VALUES, STEP, SET_3, GET_3, STEP_3, CONVERT, SET_UP, PLAIN };
 enum { OK = 0, WARNING = 1, DISCARD = 2 };     /* with the first two a run goes on */
 enum { REFUSED = 1000 };                       /* a value that does not fit is not handed over */
 enum { NOT_SETTLED = -1, NOT_SAVED = -2, NOT_RESTORED = -3 }; /* what else may end an iterated step */
@@ -28,6 +29,8 @@ enum { FLOAT32, BOOLEAN, INT8, INT16, INT64, UINT8, UINT16, UINT32, UINT64, ENUM
 typedef int (*values_function)(void *, const unsigned *, size_t, void *);
 typedef int (*values_function_3)(void *, const unsigned *, size_t, void *, size_t);
 typedef int (*step_function)(void *, double, double, int);
+typedef int (*plain_function)(void *);
+typedef int (*set_up_function)(void *, int, double, double, int, double);
 typedef int (*step_function_3)(void *, double, double, bool, bool *, bool *, bool *, double *);
 
 struct flags {
@@ -165,6 +168,13 @@ static int perform(const struct call *call, double start, double size)
         double scaled = call->low * *(const double *)call->values;
         *(double *)call->masters = scaled + call->high;
         return OK;
+    }
+    if (call->kind == PLAIN)
+        return ((plain_function)call->function)(call->instance);
+    if (call->kind == SET_UP) {
+        const double *experiment = call->values;
+        int limited = call->type != 0;
+        return ((set_up_function)call->function)(call->instance, limited, call->low, experiment[0], 1, experiment[1]);
     }
     if (call->kind == VALUES)
         return ((values_function)call->function)(call->instance, call->references, call->count, call->values);
@@ -304,3 +314,5 @@ EXPORT int64_t advance(struct plan *plan, int64_t steps, const double *starts, c
     }
     return steps;
 }
+
+#include "rows.h"

@@ -1,0 +1,391 @@
+"""Rows: a prepared scene with many values, stepped and judged in C.
+
+What does not depend on the values is done once for all rows. Where anything in a row is out of the ordinary,
+such as a value out of its limits, a warning, or steps that may be too long, that row is left to be run as any
+other: so every row has the verdicts that it has alone.
+"""
+
+import ctypes
+import math
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..declaring.upstream import sources_of, upstream
+from ..errors import LoomfmuError
+from ..fmi.native.libraries import library_of
+from ..traces import Recording
+from .claims.claim import Claim
+from .claims.judging import Form, run_of
+from .claims.movers import whole_turn
+from .dependence import TOO_LONG
+from .estimates import Estimates, coarseness, usual
+from .importing.slave import Slave
+from .master.grid import contradicted, passed_by, uniform
+from .master.master import Interrupted, Master
+from .master.rows import Judged, Judging, RowRunner, Variable, Varied
+from .master.steppers import SOURCE
+from .planning.plan import Stepping
+from .planning.pruning import Pruned
+from .planning.requested import Movements, Requested, parameter_of
+from .rates import Rates
+from .scenes.graph import step_order
+from .scenes.instances import Instance, altered
+from .scenes.scene import Scene
+from .scenes.settings import SLOWEST, UNIFORM
+from .scenes.values import Values
+
+Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+ROUNDING = 1e-9  # far above that of speeds and steps: rows within it are run as any other
+SPEED = ("shaft", "speed")
+ENOUGH, LEAST = 16, 0.3  # rows, and the share of them that must be final for more to be worth it
+
+
+class Ran(NamedTuple):
+    """The findings on rows in C; `clean` are those whose verdicts are final.
+
+    `near` says, for each row and verdict, whether it is so near its bound that a numerical error may matter.
+    `forms` are those of each verdict, `names` those of the claims, `held` the last values of signals.
+    """
+
+    clean: Mask
+    judged: Judged
+    near: Mask
+    forms: Sequence[Sequence[Form]]
+    names: Sequence[str]
+    held: Mapping[str, NDArray[Any]]
+
+
+class RowsInC:
+    """The rows of a pattern, whose parts these are; `claims` are all that are judged."""
+
+    def __init__(
+        self,
+        requested: Requested,
+        claims: Sequence[Claim],
+        estimates: Estimates,
+        rates: Rates,
+        stepping: Stepping,
+        values: Values,
+    ):
+        self._requested, self._claims, self._values = requested, claims, values
+        self._estimates, self._rates, self._stepping = estimates, rates, stepping
+        self._tried = self._final = 0  # rows that were run, and those that need not be run again
+
+    @property
+    def worth(self) -> bool:
+        """Return whether enough of the rows so far were final: each of the others is run twice."""
+        return self._tried < ENOUGH or self._final > LEAST * self._tried
+
+    def count(self, final: Mask) -> None:
+        """Take in which rows were final."""
+        self._tried += len(final)
+        self._final += int(final.sum())
+
+    @cached_property
+    def unfit(self) -> str:
+        """Return why all rows are run one by one in Python; an empty text where they are not."""
+        scene = self._requested.scene
+        if scene.package is not None:
+            return "a system package is read anew for each row"
+        if scene.accuracy is not None or scene.grid != UNIFORM:
+            return "the steps are chosen anew for each row"
+        if self._rates.signals:
+            return f"the rate of {self._rates.signals[0]} is found in Python"
+        for name, instance in scene.instances.items():
+            fmu = instance.fmu
+            if not fmu.trusted or fmu.flavour != "native" or fmu.fmi != 2 or scene.isolates(name):
+                return f"{name} is no native FMU of FMI 2 made by loomfmu, in this process"
+            if any(instance.doubts.values()):
+                return f"the scene warns of a value of {name}"
+        if step_order(scene.instances, scene.wires)[1]:
+            return "the wires close a loop"
+        for claim in self._claims:
+            if type(claim).judge is not Claim.judge or type(claim).__module__.partition(".")[0] != "loomfmu":
+                return f"the claim {claim.name or type(claim).__name__} is judged in Python"
+        return "" if library_of(SOURCE) else "no compiler is installed"
+
+    def takes(self, key: str) -> bool:
+        """Return whether the values of a key may differ from row to row: numbers that switch nothing."""
+        targets = self._values.targets(key)
+        return bool(targets) and all(self._is_number(*each) for each in targets)
+
+    def _is_number(self, name: str, variable: str) -> bool:
+        instance = self._requested.scene.instances[name]
+        facts, port = instance.fmu.facts, instance.fmu.ports[variable]
+        switches = {each for v in facts.variables.values() for each in (v.when, v.unless)} if facts else set()
+        return port.kind in ("Real", "Integer") and not port.numbers and variable not in switches
+
+    def run(self, columns: Mapping[str, Floats], scene: Scene, held: Sequence[str]) -> Ran | None:
+        """Run and judge rows, with the values of each key; None where all are to be run one by one.
+
+        `scene` is that of one of the rows, and `held` are signals to keep the last values of.
+        """
+        takers = self._takers(list(columns), scene.overrides)
+        possible = self._possible(columns, takers)
+        stepping = _Stepping(scene, takers, columns)
+        if self._steps_differ(scene, stepping, takers):
+            return None
+        possible &= self._checked(scene, columns, takers)
+        possible &= stepping.possible
+        plan = self._stepping.plan(scene, stepping.grid)
+        with self._stepping.stepped(plan) as master:
+            if any(type(slave) is not Slave for slave in master.slaves.values()):
+                return None
+            rows = _Rows(master, self._stepping.recording(plan), self._claims)
+            turned = _turned(takers, plan.pruned)
+            rows.prepare(
+                turned, list(columns), stepping, self._reached(turned, plan.pruned, stepping), self._angles
+            )
+            try:
+                judged = rows.runner.run(stepping.table, possible)
+            except Interrupted:
+                raise KeyboardInterrupt("interrupted") from None
+        clean = judged.clean & self._shown(scene, columns, takers, stepping, judged.fastest)
+        near, names = self._near(scene, rows.forms, judged.verdicts), [each.name for each in self._claims]
+        return Ran(clean, judged, near, rows.forms, names, rows.held(judged, held))
+
+    def _takers(self, keys: Sequence[str], overrides: Mapping[str, Any]) -> dict[Variable, int]:
+        """The variables that take the values of a row, each with its column; those that inherit one, too."""
+        own = self._values.taken(keys, overrides)
+        found = {variable: keys.index(key) for variable, key in own.items()}
+        for name, parameter in self._values.inheriting(own):
+            found[name, parameter] = found[self._requested.scene.instances[name].inherited[parameter]]
+        return found
+
+    def _possible(self, columns: Mapping[str, Floats], takers: Mapping[Variable, int]) -> Mask:
+        """The rows whose values are within their limits. A zero may be given with a sign, which some lose."""
+        table = np.column_stack(list(columns.values()))
+        found: Mask = np.isfinite(table).all(axis=1) & ~(np.signbit(table) & (table == 0.0)).any(axis=1)
+        for (name, variable), column in takers.items():
+            port = self._requested.scene.instances[name].fmu.ports[variable]
+            low, high = port.range
+            values = table[:, column]
+            found &= (low <= values) & (values <= high)
+            if port.kind == "Integer":
+                found &= (values == np.round(values)) & (np.abs(values) < 2**31)
+        return found
+
+    def _steps_differ(self, scene: Scene, stepping: "_Stepping", takers: Mapping[Variable, int]) -> bool:
+        """Return whether inputs that the scene drives may not go with the steps of each row."""
+        rates = {
+            (drive.instance, rate)
+            for drive in scene.drives
+            if (rate := scene.instances[drive.instance].fmu.ports[drive.variable].rate)
+        }
+        differ = stepping.size is not None and (stepping.grid.points is not None or rates)
+        return bool(differ or rates & takers.keys() or passed_by(scene) or contradicted(scene))
+
+    def _checked(self, scene: Scene, columns: Mapping[str, Floats], takers: Mapping[Variable, int]) -> Mask:
+        """The rows with parameters that no claim refuses."""
+        table, found = list(columns.values()), np.ones(len(next(iter(columns.values()))), dtype=bool)
+        for claim in self._claims:
+            bound = getattr(claim, "bound", None)
+            column = takers.get(_parts(bound)) if isinstance(bound, str) else None
+            if column is not None:
+                found &= table[column] >= 0.0
+            reads = set[str]()
+
+            def read(name: str, reads: set[str] = reads) -> float:
+                reads.add(name)
+                return parameter_of(scene, name)
+
+            claim.check_parameters(read)
+            if any(_parts(each) in takers for each in reads):
+                for row in np.flatnonzero(found):
+                    found[row] = _allows(claim, scene, table, takers, int(row))
+        return found
+
+    def _reached(self, takers: Mapping[Variable, int], pruned: Pruned, stepping: "_Stepping") -> set[str]:
+        """The instances on which values that differ have an effect."""
+        running, wires = pruned.scene.instances, pruned.scene.wires
+        if stepping.size is not None:
+            return set(running)
+        sinks = sources_of((wire.sink[0], wire.source[0]) for wire in wires)
+        return upstream({name for name, _variable in takers if name in running}, sinks)
+
+    @property
+    def _angles(self) -> list[str]:
+        """The signals of the angles whose speeds say whether steps are too long."""
+        return self._estimates.angles
+
+    def _shown(
+        self,
+        scene: Scene,
+        columns: Mapping[str, Floats],
+        takers: Mapping[Variable, int],
+        stepping: "_Stepping",
+        fastest: Floats,
+    ) -> Mask:
+        """The rows whose steps certainly show how the instances move."""
+        movements, table = Movements(self._requested), list(columns.values())
+        size = scene.step_size if stepping.size is None else stepping.size
+        sizes = np.broadcast_to(size, len(fastest)) * (1.0 + ROUNDING)
+        found = np.ones(len(fastest), dtype=bool)
+        turns = [math.tau / (whole_turn(self._requested.unit(each)) or math.tau) for each in self._angles]
+        speeds = {
+            each: fastest[:, place] * turns[place] * (1.0 + ROUNDING)
+            for place, each in enumerate(self._angles)
+        }
+        for name, angles in self._estimates.moved.items():
+            known = [speeds[each] for each in angles if each in speeds]
+            speed = np.max(known, axis=0) if known else None
+            if not _reads(scene, name, takers):
+                highest = None if speed is None else float(np.max(speed, initial=0.0))
+                longest, _why = movements.longest_step(scene, name, highest)
+                if np.all(sizes <= TOO_LONG * longest):
+                    continue
+            for row in np.flatnonzero(found):
+                here = altered(scene, instances={name: _with(scene, name, table, takers, int(row))})
+                longest, _why = movements.longest_step(
+                    here, name, None if speed is None else float(speed[row])
+                )
+                found[row] = sizes[row] <= TOO_LONG * longest
+        return found
+
+    def _near(self, scene: Scene, forms: Sequence[Sequence[Form]], verdicts: Floats) -> Mask:
+        """The verdicts of each row that are near their bounds, as `Estimates.near` has them."""
+        coarse, found = coarseness(scene), np.ones(verdicts.shape[:2], dtype=bool)
+        for number, (asked, method) in enumerate(zip(forms, self._estimates.methods, strict=True)):
+            bound, worst = verdicts[:, number, 3], verdicts[:, number, 4]
+            for place, form in enumerate(asked):
+                mine = verdicts[:, number, 2] == place
+                named = form.signal in self._requested
+                if (
+                    named
+                    and self._requested.scene.instances[_parts(form.signal)[0]]
+                    .fmu.ports[_parts(form.signal)[1]]
+                    .kind
+                    == "Integer"
+                ):
+                    continue
+                scale = np.maximum(
+                    np.maximum(np.abs(bound), np.abs(worst)), usual(scene, form.signal, form.unit[0])
+                )
+                with np.errstate(invalid="ignore"):
+                    far = np.abs(worst - bound) > coarse * method.near * scale
+                found[:, number] &= ~(mine & far)
+        return found
+
+
+class _Stepping:
+    """The steps of rows: their grid, the sizes if these differ, and the table of all values for C."""
+
+    def __init__(self, scene: Scene, takers: Mapping[Variable, int], columns: Mapping[str, Floats]):
+        self.grid, self.size = uniform(scene), None
+        self.possible = np.ones(len(next(iter(columns.values()))), dtype=bool)
+        parts = list(columns.values())
+        if SPEED in takers and scene.step is None:
+            speed = np.abs(parts[takers[SPEED]])
+            self.possible = speed >= SLOWEST
+            with np.errstate(divide="ignore"):
+                self.size = 2.0 * math.pi / (speed * scene.steps_per_period)
+            parts.append(self.size)
+        self.table = np.column_stack(parts)
+
+
+class _Rows:
+    """The questions of rows, and what runs them."""
+
+    def __init__(self, master: Master, recording: Recording, claims: Sequence[Claim]):
+        self.runner, self._recording, self._master = RowRunner(master), recording, master
+        times, reals, integers = self.runner.samples
+        recording.append(times, np.zeros(len(times)), reals, integers)
+        asked = [claim.question(recording) for claim in claims]
+        self.forms = [each.forms for each in asked]
+        self._run = run_of(recording)
+        self._questions = [(*self._run.question(recording, each), each.words.encode()) for each in asked]
+
+    def prepare(
+        self,
+        takers: Mapping[Variable, int],
+        keys: Sequence[str],
+        stepping: _Stepping,
+        reached: set[str],
+        angles: Sequence[str],
+    ) -> None:
+        """Make all ready for rows in which these variables take their values from columns."""
+        numbers = [
+            (_address(numbers, place), takers[_parts(name)])
+            for numbers, named, _words in self._questions
+            for place, name in named.items()
+            if _parts(name) in takers
+        ]
+        step = None if stepping.size is None else len(keys)
+        questions = [(numbers, words) for numbers, _named, words in self._questions]
+        judging = Judging(*self._run.rules, questions, self._run.made)
+        self.runner.prepare(judging, Varied(takers, numbers, step, reached), angles)
+
+    def held(self, judged: Judged, signals: Sequence[str]) -> dict[str, NDArray[Any]]:
+        """The last values of some signals."""
+        found = dict[str, NDArray[Any]]()
+        for signal in signals:
+            channel = self._recording.channel(signal)
+            values = (judged.reals if channel.real else judged.integers)[:, channel.column]
+            found[signal] = values.astype(bool) if channel.boolean else values
+        return found
+
+
+def _turned(takers: Mapping[Variable, int], pruned: Pruned) -> dict[Variable, int]:
+    """The takers, with what turns by itself as a shaft would turn it."""
+    found = dict(takers)
+    for name, shaft in pruned.turning.items():
+        for variable in ("speed", "start_angle") if shaft in pruned.shafts else ():
+            found.pop((name, variable), None)
+            if (shaft, variable) in takers:
+                found[name, variable] = takers[shaft, variable]
+    return found
+
+
+def _reads(scene: Scene, name: str, takers: Mapping[Variable, int]) -> bool:
+    """Return whether the longest step of an instance depends on values that differ from row to row."""
+    instance, reads = scene.instances[name], set[str]()
+    component = instance.fmu.component
+    if component is None:
+        return True
+
+    def read(variable: str) -> Any:
+        reads.add(variable)
+        return instance.effect(variable)
+
+    component.shortest_event(read)
+    component.longest_step(read)
+    return any((name, each) in takers for each in reads)
+
+
+def _with(
+    scene: Scene, name: str, table: Sequence[Floats], takers: Mapping[Variable, int], row: int
+) -> Instance:
+    """An instance with the values of a row."""
+    instance = scene.instances[name]
+    own = {variable: float(table[place][row]) for (owner, variable), place in takers.items() if owner == name}
+    return altered(instance, values=instance.values | own)
+
+
+def _allows(
+    claim: Claim, scene: Scene, table: Sequence[Floats], takers: Mapping[Variable, int], row: int
+) -> bool:
+    """Return whether a claim refuses no parameter of a row."""
+
+    def read(name: str) -> float:
+        place = takers.get(_parts(name))
+        return parameter_of(scene, name) if place is None else float(table[place][row])
+
+    try:
+        claim.check_parameters(read)
+    except LoomfmuError:
+        return False
+    return True
+
+
+def _parts(signal: str) -> Variable:
+    instance, _, variable = signal.partition(".")
+    return instance, variable
+
+
+def _address(numbers: Any, place: int) -> int:
+    return ctypes.addressof(numbers) + place * ctypes.sizeof(ctypes.c_double)
