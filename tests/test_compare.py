@@ -75,6 +75,16 @@ def test_a_difference_is_found_where_it_begins_and_where_it_is_largest(tmp_path:
         loomfmu.compare(a, b, ignore=["*"])
 
 
+@pytest.mark.parametrize("turns", [2.0, 0.0])  # 1441 samples, or one
+def test_the_first_sample_counts(tmp_path: Path, turns: float) -> None:
+    def begun(angle: Any) -> Any:
+        return np.sin(angle) + 0.01 * (angle == 0.0)
+
+    paths = trace(tmp_path / "a.h5", turns=turns), trace(tmp_path / "b.h5", begun, turns=turns)
+    (change,) = loomfmu.compare(*paths, over="time").differences
+    assert change.signal == "belt.x" and change.largest == pytest.approx(0.01)
+
+
 def test_a_value_that_one_trace_lacks_is_a_difference_and_one_that_both_lack_is_not(tmp_path: Path) -> None:
     def lacking(angle: Any) -> Any:
         return np.where(angle > 7.0, np.nan, np.sin(angle))

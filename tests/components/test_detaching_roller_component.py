@@ -33,6 +33,9 @@ def test_torques_add_up(division, use_table):
     assert roller.back_torque == roller.drafting_torque + roller.front_torque
     assert roller.unit_torque == roller.back_torque + roller.front_torque
     assert roller.drafting_torque == roller.drafting_force * roller.roller_radius
+    # the energy is that of the inertia that the torques accelerate: of both rollers of every unit
+    power = roller.units * roller.front_torque * roller.roller_velocity**2
+    assert roller.kinetic_energy * roller.roller_acceleration == pytest.approx(power, rel=1e-14)
 
 
 def test_given_motion():

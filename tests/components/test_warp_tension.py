@@ -169,6 +169,21 @@ def test_slack_within_one_step_is_seen():
             assert warp.mean_tension == pytest.approx(0.1 - 0.4 / 6.0, abs=1e-15)
 
 
+def test_both_turns_within_one_step_are_seen():
+    # x = 6 mm + a t (1 - t) (1 - 2 t) has extremes at (1 -+ 1 / sqrt 3) / 2: a / (6 sqrt 3) to either side
+    a = 0.004
+    warp = level(creep_rate=0.0, relaxation_rate=0.0, pretension=0.1, thread_stiffness=100.0)
+    pull_to(warp, 0.006, a, -6.0 * a)
+    warp.initialize(0.0)
+    warp.sampled_force = warp.highest_tension = 0.0  # a spring that has slipped: F = 100 (x - 6 mm)
+    pull_to(warp, 0.006, a, 6.0 * a)
+    warp.step(0.0, 1.0)
+    most = 100.0 * a / (6.0 * sqrt(3.0))
+    # rounding of a tension of 0.1
+    assert warp.highest_tension == pytest.approx(0.1 + most, abs=1e-15)
+    assert warp.lowest_tension == pytest.approx(0.1 - most, abs=1e-15)
+
+
 # A thread on the loom
 
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from drawn_runs import drawn, turning
 
 import loomfmu
 from loomfmu import LoomfmuError
@@ -65,6 +66,15 @@ def test_a_folded_dataset_has_whole_revolutions(result: loomfmu.Result) -> None:
     exact = np.interp(np.arange(1000) / 500, turned, result.trace["heald_1.lift"])
     # angles are the same to rounding, and the frame moves by less than a metre in a revolution
     np.testing.assert_allclose(other["heald_1.lift"].values.ravel(), exact, rtol=0, atol=1e-9)
+
+
+def test_a_revolution_that_was_not_recorded_whole_is_left_out() -> None:
+    angle = 2 * np.pi * np.linspace(1.25, 4.25, 1081)  # 360 samples in a revolution
+    run = drawn(np.linspace(0.0, 0.3, 1081), turning(angle, 20.0 * np.pi) | {"belt.x": ("m", np.sin(angle))})
+    folded = run.to_xarray("belt.x", fold=True)
+    assert dict(folded.sizes) == {"revolution": 2, "angle": 360}
+    np.testing.assert_array_equal(folded["revolution"], [2, 3])  # the first one began at 90 deg
+    np.testing.assert_array_equal(folded["belt.x"].values.ravel(), run["belt.x"][270:990])
 
 
 def test_a_table_and_a_dataset_have_degrees(result: loomfmu.Result) -> None:

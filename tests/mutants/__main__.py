@@ -68,8 +68,9 @@ def mutants(text: str) -> Iterator[tuple[int, str, str, str]]:
 def first_failure(copy: Path, tests: Path, module: str, options: list[str]) -> str:
     """Return the first test of a module that fails, an empty text if none does."""
     start = max((start for start in TABLE if module.startswith(start)), key=len)
-    equations = module.startswith(("physics", "components"))  # published numbers are compared in one place
-    more = ["validation/test_report.py"] if equations else []
+    equations = module.startswith(("physics", "components"))
+    # published numbers, and the variables as the pages of the FMUs state them, are compared in one place
+    more = ["validation/test_report.py", "fmi/test_live_fmu.py"] if equations else []
     files = [str(copy / "src" / "loomfmu" / module), *(str(tests / file) for file in (*TABLE[start], *more))]
     run = subprocess.run(
         [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *options, *files],

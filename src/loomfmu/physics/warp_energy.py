@@ -49,6 +49,8 @@ def thread_power(
 
     >>> thread_power(1.0, 2.0, 0.0, [4.0] + [0.0] * 5, 5.0, [0.0] * 4, 0.5)
     (15.0, 20.0, 0.0)
+    >>> thread_power(1.0, -2.0, 0.0, [4.0] + [0.0] * 5, 5.0, [0.0] * 4, 0.5)  # slack
+    (0.0, 0.0, 0.0)
     """
     tension = pretension + force
     if tension < 0.0:

@@ -22,9 +22,12 @@ def test_the_cubic_and_the_quintic_are_lowest_where_dense_samples_say(seed: int)
     step = 10.0 ** rng.uniform(-6.0, 2.0)
     cubic = np.polynomial.Polynomial([rng.uniform(-1.0, 1.0) for _ in range(4)])
     quintic = np.polynomial.Polynomial([rng.uniform(-1.0, 1.0) for _ in range(6)])
+    # turns just beyond the end, where it does not count
+    turned = (np.polynomial.Polynomial([-1.05, 1.0]) * quintic.cutdeg(3)).integ()
     for curve, orders, low, high in (
         (cubic, 2, lowest_so_far, highest_so_far),
         (quintic, 3, lowest_by_two_rates, highest_by_two_rates),
+        (turned, 3, lowest_by_two_rates, highest_by_two_rates),
     ):
         rates = [curve.deriv(order) if order else curve for order in range(orders)]
         start, end = ([float(r(u)) / step**n for n, r in enumerate(rates)] for u in (0.0, 1.0))
