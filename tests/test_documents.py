@@ -92,6 +92,12 @@ def test_the_house_lists_what_is_there_and_the_layers_as_they_are_enforced() -> 
     rules = tomllib.loads((HOUSE / "pyproject.toml").read_text())["tool"]["importlinter"]["contracts"]
     layers = [layer.replace("loomfmu.", "").replace(" | ", ", ") for layer in rules[0]["layers"]]
     assert " > ".join(layers) in prose(page)
+    rooms = re.findall(r"^\| `(\w+)/` \| ([\d,]+) \|", page.read_text(), re.MULTILINE)
+    assert len(rooms) > 8
+    for room, lines in rooms:
+        files = (HOUSE / "src" / "loomfmu" / room).rglob("*.py")
+        found = sum(len(path.read_text(encoding="utf-8").splitlines()) for path in files)
+        assert int(lines.replace(",", "")) == pytest.approx(found, rel=0.1), room  # a page need not say more
 
 
 def test_scenes_and_sweeps_that_are_shown_are_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
