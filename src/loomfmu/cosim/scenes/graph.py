@@ -2,13 +2,14 @@
 
 import heapq
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ...declaring.upstream import sources_of
 from ...errors import LoomfmuError, shown
 from ..importing.conversions import SAME, Linear
 from ..importing.fmus import Port, Value
@@ -120,75 +121,53 @@ def usual_coupling(instances: Iterable[str], wires: Iterable[Wire], trusted: boo
     return ITERATED if closing and trusted else LAGGED
 
 
-def _order(sources: Mapping[str, set[str]]) -> list[str]:
-    """The order of instances, each given with those that feed it."""
-    names = list(sources)
-    rank = {name: number for number, name in enumerate(names)}
-    sinks: dict[str, list[str]] = {name: [] for name in names}
-    for name in names:
-        for source in sources[name]:
-            sinks[source].append(name)
-    waiting = {name: len(sources[name]) for name in names}
-    ready = [rank[name] for name in names if not waiting[name]]  # in order: a heap already
-    loops = _Loops(sources, rank)
-    order: list[str] = []
-    while len(order) < len(names):
-        name = names[heapq.heappop(ready) if ready else loops.first()]
-        order.append(name)
-        loops.take(name, sinks[name])
-        for sink in sinks[name]:
-            waiting[sink] -= 1
-            if not waiting[sink] and sink not in loops.taken:
-                heapq.heappush(ready, rank[sink])
-    return order
+@dataclass
+class _Group:
+    """One instance alone or those of a loop, the first of the scene first.
 
-
-class _Loops:
-    """The loops among the instances that are left.
-
-    An instance that is taken out breaks its own loop alone: only that is looked through again.
+    `feeding` is how many others that are left feed its members.
     """
 
-    def __init__(self, sources: Mapping[str, set[str]], rank: Mapping[str, int]):
-        self.sources, self.rank = sources, rank
-        self.taken: set[str] = set()
-        self._members: list[list[str]] = [list(sources)]  # of each loop
-        self._loop = dict.fromkeys(sources, 0)  # its number
-        self._feeding = [0]  # wires that lead into it from what is left
-        self._unfed: list[tuple[int, int]] = []  # heap of loops without such wires: rank of the first, number
-        self._broken = 0  # the loop that may have fallen apart
+    members: list[str]
+    feeding: int
 
-    def first(self) -> int:
-        """The rank of the first instance on a loop that nothing else feeds."""
-        left = [name for name in self._members[self._broken] if name not in self.taken]
-        found = len(self._members)
-        for members in _strongly_connected(left, self.sources):
-            self._loop |= dict.fromkeys(members, len(self._members))
-            self._members.append(members)
-        for number in range(found, len(self._members)):
-            self._feeding.append(self._count(number))
-            self._offer(number)
-        rank, self._broken = heapq.heappop(self._unfed)
-        return rank
 
-    def take(self, name: str, sinks: Sequence[str]) -> None:
-        """Take out an instance that feeds these."""
-        self.taken.add(name)
-        for sink in sinks:
-            number = self._loop[sink]
-            if number != self._loop[name]:
-                self._feeding[number] -= 1
-                self._offer(number)
+def _order(sources: Mapping[str, set[str]]) -> list[str]:
+    """The order of instances, each given with those that feed it.
 
-    def _count(self, number: int) -> int:
-        inside = set(self._members[number])
-        return sum(len(self.sources[name] - inside - self.taken) for name in inside)
+    A group is ready when nothing else feeds it: instances before loops. A loop is broken by taking its first
+    instance, which may leave smaller groups; only these are looked for again.
+    """
+    rank = {name: number for number, name in enumerate(sources)}
+    sinks = sources_of((sink, source) for sink, each in sources.items() for source in each)
+    groups: dict[str, _Group] = {}
+    ready: list[tuple[bool, int, _Group]] = []  # a heap
+    order: list[str] = []
+    taken: set[str] = set()
 
-    def _offer(self, number: int) -> None:
-        """Have a loop ready to be broken once nothing else feeds it; one instance alone needs no breaking."""
-        if not self._feeding[number] and len(self._members[number]) > 1:
-            first = min(self.rank[name] for name in self._members[number])
-            heapq.heappush(self._unfed, (first, number))
+    def offer(group: _Group) -> None:
+        if not group.feeding:
+            heapq.heappush(ready, (len(group.members) > 1, rank[group.members[0]], group))
+
+    def divide(names: Iterable[str]) -> None:
+        for members in _strongly_connected(names, sources):
+            others = (sources[name] - taken - set(members) for name in members)
+            group = _Group(sorted(members, key=rank.__getitem__), sum(map(len, others)))
+            groups.update(dict.fromkeys(members, group))
+            offer(group)
+
+    divide(sources)
+    while ready:
+        _is_loop, _rank, group = heapq.heappop(ready)
+        name, *rest = group.members
+        order.append(name)
+        taken.add(name)
+        for sink in sinks.get(name, ()):
+            if groups[sink] is not group and sink not in taken:
+                groups[sink].feeding -= 1
+                offer(groups[sink])
+        divide(rest)
+    return order
 
 
 def _strongly_connected(names: Iterable[str], sources: Mapping[str, set[str]]) -> Iterator[list[str]]:
