@@ -10,7 +10,7 @@ from reference import ALL_MACHINES, machine
 from scipy.optimize import minimize_scalar
 
 from loomfmu.components import BeltMonitor
-from loomfmu.physics.belt import NO_LIMIT, critical_force, elastica_deflection, length_factor
+from loomfmu.physics.belt import NO_LIMIT, REST, critical_force, elastica_deflection, length_factor
 
 STROKES = {"insertion": 0.0, "return": 0.5}  # turn at which each begins
 every_stroke = pytest.mark.parametrize("begin", STROKES.values(), ids=STROKES)
@@ -213,9 +213,20 @@ def test_weft_loads_the_belt_only_while_the_head_carries_it(taker):
     )
     # a giver pushes the weft in and returns empty; a taker goes in empty and pulls the weft out
     moving = {
-        velocity > 0.0: {round(load, 9) for v, load in seen if v * velocity > 0.0} for velocity in (1, -1)
+        velocity > 0.0: {round(load, 9) for v, load in seen if v * velocity > REST} for velocity in (1, -1)
     }
     assert moving == ({True: {0.0}, False: {-5.0}} if taker else {True: {5.0}, False: {0.0}})
+
+
+@pytest.mark.parametrize("taker", [False, True])
+def test_at_the_hand_over_the_giver_has_the_weft_whatever_rounding_leaves_of_the_velocity(taker):
+    loads = set()
+    for velocity in (0.0, 1e-13, -1e-13, -5e-12):
+        belt = BeltMonitor(velocity=velocity, yarn_tension=5.0, taker=taker, inputs_at_step_end=True)
+        belt.initialize(0.0)
+        belt.step(0.0, 0.0)
+        loads.add(belt.axial_force - belt.inertia_force)
+    assert loads == {0.0 if taker else 5.0}
 
 
 @every_stroke

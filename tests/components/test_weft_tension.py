@@ -315,6 +315,14 @@ def test_a_weft_that_is_carried_at_the_start_is_drawn_steadily():
     assert late.carried and late.length == pytest.approx(0.6 + 1.0 - 0.1)
 
 
+@pytest.mark.parametrize("velocity", [0.0, 1e-13, -1e-13, -5e-12])
+def test_a_start_at_the_hand_over_is_the_givers_whatever_rounding_leaves_of_the_velocity(velocity):
+    # its head slows down; the taker would quicken, and the tension be 23 % higher
+    weft = WeftTension(travel=2.0, velocity=velocity, acceleration=-2000.0, brake_force=1.0)
+    assert weft.initialize(0.0) == 0
+    assert weft.tension == pytest.approx(exp(0.1 * pi) * 1.05 - 30e-6 * 2.5 * 2000.0, rel=1e-12)
+
+
 # Motions of a loom that are not picks
 
 

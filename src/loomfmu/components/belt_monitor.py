@@ -228,7 +228,8 @@ class BeltMonitor(ShaftDriven):
         travel, second = joined_value(self.sampled_travel, way.rate, way.a0, way.a1, way.a2, way.a3, share)
         second = second / (way.step * way.step)
         tension = self.sampled_force + share * (self.yarn_tension - self.sampled_force)
-        tension = weft_load(tension, joined_rate(way.rate, way.a0, way.a1, way.a2, way.a3, share), self.taker)
+        rate = joined_rate(way.rate, way.a0, way.a1, way.a2, way.a3, share)
+        tension = weft_load(tension, rate / fabs(way.step), self.taker)
         factor = self.length_factor
         if self.sampled_clearance != self.guide_clearance and not self.prescribe_length_factor:
             clearance = self.sampled_clearance + share * (self.guide_clearance - self.sampled_clearance)

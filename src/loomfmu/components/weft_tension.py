@@ -7,6 +7,7 @@ from typing import ClassVar
 from ..declaring.arrays import array
 from ..declaring.declarations import auxiliary, output, parameter, state
 from ..declaring.variables import Problem, Terminal
+from ..physics.belt import on_way_in
 from ..physics.shaft import carried, too_far
 from ..physics.weft import capstan_gain, drag_per_length, quintic, snatch_tension, unstretched_length
 from ..physics.weft_way import (
@@ -215,7 +216,7 @@ class WeftTension(ShaftDriven):
         now = self.sample(brake, time, 0.0, self.travel, self.velocity, self.acceleration)
         if too_far(now.angle):
             return 1
-        self.inward = self.velocity >= 0.0
+        self.inward = on_way_in(self.velocity)
         self.length_offset = self.supply_length - self.pick_up_travel
         if not self.inward:  # how far the giver brought it is not known: to here
             self.length_offset = self.length_offset + 2.0 * self.travel

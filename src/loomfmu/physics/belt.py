@@ -14,6 +14,7 @@ from .numerics.brackets import at_root
 # Largest speed limit that is returned: 95,493 rev/min. Towards the edge of its window the limit grows
 # without bound; outside it there is none.
 NO_LIMIT = 1e4
+REST = 1e-9  # m/s: of a head that is slower, rounding may have made the direction
 
 
 # knots of Table 3: guide clearances [m] and length factors [1]
@@ -87,6 +88,17 @@ def margin(free_length: float, axial_force: float, factor: float, stiffness: flo
     return 1.0 - axial_force * reduced * reduced / strength
 
 
+def on_way_in(velocity: float) -> bool:
+    """Return whether a head counts as on its way in: up to and with its inner dead centre, the hand-over.
+
+    There the velocity is what rounding leaves, other on each platform; the giver has the weft up to then.
+
+    >>> on_way_in(30.0), on_way_in(-1e-12), on_way_in(-1e-6)
+    (True, True, False)
+    """
+    return velocity > -REST
+
+
 def weft_load(tension: float, velocity: float, taker: bool) -> float:
     """Compression of the belt by the weft that its head carries [N]: F_z of (12) with its direction.
 
@@ -106,8 +118,8 @@ def weft_load(tension: float, velocity: float, taker: bool) -> float:
     (0.0, -2.0)
     """
     if taker:
-        return 0.0 - tension if velocity < 0.0 else 0.0
-    return tension if velocity >= 0.0 else 0.0
+        return 0.0 if on_way_in(velocity) else 0.0 - tension
+    return tension if on_way_in(velocity) else 0.0
 
 
 def speed_limit(
