@@ -5,8 +5,9 @@ from dataclasses import dataclass
 from math import cos, fabs, inf, pi, sin, sqrt
 from typing import Any, ClassVar
 
-from ..declaring.declarations import auxiliary, output, parameter
+from ..declaring.declarations import Quantity, auxiliary, output, parameter
 from ..declaring.variables import MIXED, NOTHING, Problem
+from ..physics.beat_up import fell_displacement
 from ..physics.linkage import four_bar, four_bar_margin, wrapped
 from ..physics.reed import (
     dead_centre,
@@ -18,7 +19,19 @@ from ..physics.reed import (
     transmission_angle,
 )
 from ..physics.shaft import too_far
-from .quantities import ANGLE, INERTIA, LENGTH, LINK_LENGTH, LINK_PLACE, MASS, PHASE, RATIO, TURNING
+from .quantities import (
+    ANGLE,
+    CLOTH_STIFFNESS,
+    INERTIA,
+    LENGTH,
+    LINK_LENGTH,
+    LINK_PLACE,
+    MASS,
+    PHASE,
+    RATIO,
+    SPACING,
+    TURNING,
+)
 from .shaft_driven import TOO_FAR, ShaftDriven
 from .shared_declarations import found_once
 
@@ -48,6 +61,10 @@ class ReedBeatUp(ShaftDriven):
         ),
         Problem("assembly = {assembly} or crank_direction = {crank_direction} must be -1 or 1"),
         TOO_FAR,
+        Problem(
+            "pick_spacing = {pick_spacing} must lie between least_spacing = {least_spacing} and"
+            " resistance_reach = {resistance_reach}"
+        ),
     )
 
     crank_length: float = parameter(LINK_LENGTH, 0.065168, "Length of the crank")
@@ -95,6 +112,24 @@ class ReedBeatUp(ShaftDriven):
     rocker_inertia: float = parameter(
         INERTIA.within(0.0, 1e4), 0.0, "Inertia of the rocker about its pivot (none published)"
     )
+    weaving_resistance: float = parameter(
+        Quantity("N.m", minimum=0.0, maximum=1e6, nominal=0.1),
+        0.0,
+        "Resistance of a pick against beat-up, times its spacing less least_spacing; 0: no cloth is woven",
+    )
+    warp_stiffness: float = parameter(
+        CLOTH_STIFFNESS, 1.5e5, "Stiffness of all warp threads, from fell to back rest (assumed)"
+    )
+    cloth_stiffness: float = parameter(
+        CLOTH_STIFFNESS, 3.75e5, "Stiffness of the cloth, from fell to take-up (assumed)"
+    )
+    pick_spacing: float = parameter(
+        SPACING, 0.5e-3, "Spacing of the picks, as the cloth is taken up (assumed)"
+    )
+    least_spacing: float = parameter(SPACING, 0.3e-3, "Spacing to which no force could beat a pick (assumed)")
+    resistance_reach: float = parameter(
+        SPACING, 2e-3, "Distance from the pick before it at which a pick begins to resist (assumed)"
+    )
     position: float = output(
         LENGTH, "Reed coordinate from the rocker's pivot, towards the fell", nominal=0.1, rate="velocity"
     )
@@ -113,7 +148,20 @@ class ReedBeatUp(ShaftDriven):
     back_limit: float = found_once(LENGTH, "Reed coordinate at the back dead centre", nominal=0.1)
     stroke: float = found_once(LENGTH, "Travel of the reed between its limits", nominal=0.1)
     shaft_torque: float = output(
-        "N.m", "Torque the shaft needs to drive the moving masses; 0 with a servo", nominal=10.0
+        "N.m",
+        "Torque the shaft needs to drive the moving masses and to beat up; 0 with a servo",
+        nominal=10.0,
+    )
+    fell_displacement: float = output(
+        LENGTH, "Displacement of the fell by the reed, towards the cloth", nominal=1e-3, rate="fell_velocity"
+    )
+    fell_velocity: float = output("m/s", "Velocity of the fell")
+    beat_up_force: float = output(
+        "N", "Force of the reed on the fell", nominal=100.0, rate="beat_up_force_rate"
+    )
+    beat_up_force_rate: float = output("N/s", "Rate of beat_up_force", nominal=1e5)
+    passed_torque: float = output(
+        "N.m", "Part of shaft_torque that beats up: its work is not in shaft_work", nominal=10.0
     )
     crank_velocity: float = output(TURNING, "Velocity of the crank in its direction")
     crank_torque: float = output(
@@ -166,6 +214,8 @@ class ReedBeatUp(ShaftDriven):
         """Check that the crank makes full turns and that the rod swings the reed, clear of dead points."""
         if self.assembly == 0 or self.crank_direction == 0:
             return 4
+        if not self.least_spacing < self.pick_spacing < self.resistance_reach:
+            return 6
         frame = sqrt(self.crank_x * self.crank_x + self.crank_y * self.crank_y)
         self.closure = four_bar_margin(
             0.0,
@@ -240,9 +290,26 @@ class ReedBeatUp(ShaftDriven):
             sqrt(x * x + y * y), self.coupler_length, self.rocker_length
         )
         rocker_acceleration = second * turning * turning + first * quickening
-        self.crank_torque = (
-            self.reed_mass * self.acceleration * slope + self.rocker_inertia * rocker_acceleration * first
+        stiffness = self.warp_stiffness + self.cloth_stiffness
+        self.fell_displacement, by_way = fell_displacement(
+            self.front_limit - self.position,
+            self.velocity < 0.0,
+            self.weaving_resistance,
+            stiffness,
+            self.least_spacing,
+            self.pick_spacing,
+            self.resistance_reach,
         )
+        self.fell_velocity = by_way * self.velocity
+        self.beat_up_force = stiffness * self.fell_displacement
+        self.beat_up_force_rate = stiffness * self.fell_velocity
+        beating = self.beat_up_force * slope
+        self.crank_torque = (
+            self.reed_mass * self.acceleration * slope
+            + self.rocker_inertia * rocker_acceleration * first
+            + beating
+        )
+        self.passed_torque = 0.0 if self.servo else beating
         self.shaft_torque = 0.0 if self.servo else self.crank_torque
         rocker_velocity = first * turning
         self.kinetic_energy = 0.5 * (
