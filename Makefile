@@ -71,9 +71,9 @@ site: .venv/installed-for-tests
 validation: .venv/installed-for-tests
 	$(VALIDATE)
 
-# what modules of WebAssembly need of the C library, of the installed version of the compiler
+# what is linked of the C library, of the installed version of the compiler
 runtime: .venv/installed
-	$(BIN)/python -m loomfmu.fmi.native.web_assembly
+	$(BIN)/python -m loomfmu.fmi.native.runtime
 
 # a package that brings native FMUs and its other libraries for all platforms: who installs it needs no compiler;
 # built in a copy, since what an interrupted build leaves in src would be run

@@ -6,7 +6,7 @@ Beside them it holds a run of the scene, which can be read and printed before an
 import shlex
 import tempfile
 from base64 import b64encode
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict
 from functools import partial
@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import units
+from ..cosim.importing.fmus import Fmu, build, unbuilt
 from ..cosim.master.steppers import SOURCE
 from ..cosim.reading import checked, drawn
 from ..cosim.recorded import usual_path
@@ -88,7 +89,7 @@ def write(
     rows = {each.name: (number, each) for number, each in enumerate(variables_of(component_of(whole)))}
     varied = knobs(loaded, [name for name, (_, each) in rows.items() if each.settable], vary)
     with tempfile.TemporaryDirectory(prefix="loomfmu-") as directory:
-        stepping, judging = _compiled(whole)
+        stepping, judging = _compiled(whole, (loaded.instances[each.name].fmu for each in whole.parts))
         started = run(drawn(loaded), output=Path(directory) / "start.h5", progress=True)
         with started.trace as trace:
             subject = Subject([trace], live=True)
@@ -111,10 +112,11 @@ def write(
     return write_file(path, content.encode(), PAGE, inputs, overwrite)
 
 
-def _compiled(whole: System) -> list[str]:
-    """The modules that step and judge the scene, compiled beside the libraries that its run needs."""
+def _compiled(whole: System, fmus: Iterable[Fmu]) -> list[str]:
+    """The modules that step and judge the scene, compiled beside the libraries and FMUs of its run."""
     libraries = [partial(library_of, each) for each in (standard().RULES, SOURCE)]
-    makes: list[Callable[[], Any]] = [partial(module, whole), rules, *libraries]
+    missing = [partial(build, [each]) for each in unbuilt(fmus)]
+    makes: list[Callable[[], Any]] = [partial(module, whole), rules, *libraries, *missing]
     with progress("compiling the scene for the browser", len(makes)) as advance, ThreadPoolExecutor() as pool:
         made = [pool.submit(each) for each in makes]
         for each in made:

@@ -15,6 +15,7 @@ from ...cache.directory import compiler_environment
 from ...errors import LoomfmuError
 from ...extras import install
 from .fat_binary import fat_binary
+from .linking import keeps, link
 from .platforms import COMPILER, HERE, PLATFORMS, SHIPPED, compiler, platform_of, stamp
 from .sources import code_of
 
@@ -136,7 +137,17 @@ def folder(code: dict[str, str]) -> Iterator[Path]:
 def _compile(source: str, output: Path, target: str, directory: Path, flags: tuple[str, ...] = FLAGS) -> None:
     """Compile a file into a shared library. Paths are relative, so that none gets into it."""
     options = [option.format(name=output.stem) for option in platform_of(target).options]
-    compiled_in(directory, target, *flags, "-o", str(output), source, *options)
+    made_in(directory, target, source, output, *flags, *options)
+
+
+def made_in(directory: Path, target: str, source: str, output: Path, *flags: str) -> None:
+    """Compile a file in a directory and link it. Raises LoomfmuError with the reason."""
+    if keeps(target):
+        compiled = output.with_suffix(".o").as_posix()
+        compiled_in(directory, target, *flags, "-c", "-o", compiled, source)
+        if link(lambda *given: zig(*given).returncode == 0, target, compiled, output.as_posix(), directory):
+            return
+    compiled_in(directory, target, *flags, "-o", output.as_posix(), source)
 
 
 def compiled_in(directory: Path, target: str, *arguments: str) -> None:
