@@ -18,7 +18,7 @@ VALIDATE := PYTHONPATH=tests $(BIN)/python -m validation
 # tests start hundreds of processes: each would compile the package again, which takes longer than most that it does
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test test-all coverage check stress attack verdicts bench docs site validation wheel runtime pins clean
+.PHONY: demo test test-all coverage check stress attack verdicts bench foreign docs site validation wheel runtime pins clean
 
 demo: .venv/installed
 	$(BIN)/loomfmu run sims/wl680_3600.toml
@@ -58,6 +58,11 @@ verdicts: .venv/installed-for-tests
 # run time against error, side by side with other masters: about a quarter of an hour
 bench: .venv/installed-for-tests
 	$(BIN)/python tests/benchmarks
+
+# our FMUs in the other tools that are installed, and FMUs of other makers (FOREIGN_FMUS=DIRECTORY) in ours;
+# writes results/foreign.md. Ten minutes
+foreign: .venv/installed-for-tests
+	PYTHONPATH=tests $(BIN)/python tests/foreign
 
 # the tables of variables in the READMEs of the FMUs, and their reference results
 docs: .venv/installed

@@ -39,7 +39,7 @@ def sections(generated: list[str]) -> dict[str, list[str]]:
         "Notebooks": list(NOTEBOOKS),
         "Mechanisms": ["fmus/README.md", *(page.relative_to(ROOT).as_posix() for page in mechanisms)],
         "Reference": [*REFERENCE, *generated],
-        "Evidence": ["results/validation.md", "results/benchmarks.md"],
+        "Evidence": ["results/validation.md", "results/benchmarks.md", "results/foreign.md"],
         "Project": list(PROJECT),
         "Contributing": list(CONTRIBUTING),
     }

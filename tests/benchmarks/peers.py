@@ -64,14 +64,9 @@ class Ecos(Peer):
     """ecos; `recorded` is "csv" for its writer."""
 
     def _open(self, steps: int) -> Any:
-        from masters import tbb
+        from masters import ecospy
 
-        tbb()
-        from ecospy import EcosSimulation
-        from ecospy.lib import EcosLib
-
-        EcosLib.set_log_level("off")
-        simulation = EcosSimulation(step_size=self.step_size(steps), ssp_path=str(self.package))
+        simulation = ecospy().EcosSimulation(step_size=self.step_size(steps), ssp_path=str(self.package))
         if self.recorded:
             names = [f"{name}::{variable}" for name, variable, _port in self.outputs()]
             simulation.add_csv_writer(str(self.directory / "trace.csv"), identifiers=names)

@@ -1,10 +1,10 @@
-"""The demonstration loom in third-party masters. Each returns the real outputs along the steps."""
+"""System packages and single FMUs in third-party masters. Each returns real outputs along the steps."""
 
 import contextlib
 import ctypes
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fmpy import read_model_description, simulate_fmu
 from numpy.typing import NDArray
 
 from loomfmu.cosim.run import run
@@ -47,14 +48,14 @@ def reals(scene: Scene) -> list[str]:
     ]
 
 
-def packed(scene: Scene, directory: Path) -> Path:
+def packed(scene: Scene, directory: Path, fmi: int = 2) -> Path:
     """The scene as a system package with native FMUs."""
     path = directory / f"{scene.name}.ssp"
-    ssp.export(scene, path, "native", (host(),))
+    ssp.export(scene, path, "native", (host(),), fmi=fmi)
     return path
 
 
-# ---- the masters
+# ---- the masters; each runs the package of a scene
 
 
 def libcosimpy() -> SimpleNamespace:
@@ -69,10 +70,10 @@ def libcosimpy() -> SimpleNamespace:
     return SimpleNamespace(Execution=CosimExecution, Observer=CosimObserver, Slave=CosimLocalSlave)
 
 
-def libcosim(scene: Scene, directory: Path) -> Signals:
+def libcosim(scene: Scene, package: Path) -> Signals:
     """libcosim reads the package and the step in it."""
     cosim = libcosimpy()
-    execution = cosim.Execution.from_ssp_file(str(packed(scene, directory)))
+    execution = cosim.Execution.from_ssp_file(str(package))
     observer = cosim.Observer.create_last_value()
     assert execution.add_observer(observer)
     indices = {info.name.decode(): info.index for info in execution.slave_infos()}
@@ -101,11 +102,10 @@ def ecospy() -> ModuleType:
     return ecospy
 
 
-def ecos(scene: Scene, directory: Path) -> Signals:
+def ecos(scene: Scene, package: Path) -> Signals:
     """ecos reads the package, and takes the parameter sets of one name."""
     rows = {signal: [] for signal in reals(scene)}
-    path = str(packed(scene, directory))
-    with ecospy().EcosSimulation(step_size=scene.step_size, ssp_path=path) as simulation:
+    with ecospy().EcosSimulation(step_size=scene.step_size, ssp_path=str(package)) as simulation:
         assert simulation.init(parameter_set=ssp.SET_NAME)
         for _ in range(scene.steps):
             simulation.step(1)
@@ -115,7 +115,7 @@ def ecos(scene: Scene, directory: Path) -> Signals:
     return {signal: np.array(values) for signal, values in rows.items()}
 
 
-def fmpy(scene: Scene, directory: Path) -> Signals:
+def fmpy(scene: Scene, package: Path) -> Signals:
     """fmpy reads the package but not its parameters, and stamps a row with the time before its step."""
     from fmpy.ssp.simulation import simulate_ssp
     from fmpy.ssp.ssd import Parameter, ParameterSet
@@ -127,7 +127,7 @@ def fmpy(scene: Scene, directory: Path) -> Signals:
         if variable != "inputs_at_step_end"
     ]
     rows = simulate_ssp(
-        str(packed(scene, directory)),
+        str(package),
         stop_time=(scene.steps - 0.5) * scene.step_size,
         step_size=scene.step_size,
         parameter_set=ParameterSet(parameters=values),
@@ -145,12 +145,11 @@ def oms_library() -> ctypes.CDLL:
     return ctypes.CDLL(str(next(place for place in places if place.exists())))
 
 
-def omsimulator(scene: Scene, directory: Path) -> Signals:
+def omsimulator(scene: Scene, package: Path) -> Signals:
     """OMSimulator imports the package, with its master, its step and its values."""
     library, model = oms_library(), ctypes.c_char_p()
-    assert library.oms_setTempDirectory(str(directory).encode()) == 0
-    path = str(packed(scene, directory)).encode()
-    assert library.oms_importFile(path, ctypes.byref(model)) == 0
+    assert library.oms_setTempDirectory(str(package.parent).encode()) == 0
+    assert library.oms_importFile(str(package).encode(), ctypes.byref(model)) == 0
     assert model.value is not None
     rows = {signal: [] for signal in reals(scene)}
     crefs = {signal: f"{model.value.decode()}.{scene.name}.{signal}".encode() for signal in rows}
@@ -168,6 +167,89 @@ def omsimulator(scene: Scene, directory: Path) -> Signals:
 
 
 MASTERS: dict[str, Master] = {"libcosim": libcosim, "ecos": ecos, "fmpy": fmpy, "OMSimulator": omsimulator}
+
+
+# ---- the same, and PyFMI, with one FMU by itself
+
+STEP = 1e-4  # [s], a whole number of nanoseconds
+WEAKLY_COUPLED = 1  # oms_system_wc
+Alone = Callable[[Path, Sequence[str], int], Signals]
+
+
+def libcosim_alone(path: Path, signals: Sequence[str], steps: int) -> Signals:
+    cosim = libcosimpy()
+    described = read_model_description(str(path), validate=False)
+    references = {each.name: each.valueReference for each in described.modelVariables}
+    execution = cosim.Execution.from_step_size(round(1e9 * STEP))
+    index = execution.add_local_slave(slave := cosim.Slave(fmu_path=str(path), instance_name="one"))
+    observer = cosim.Observer.create_last_value()
+    assert slave and execution.add_observer(observer)
+    rows = []
+    for _ in range(steps):
+        assert execution.step(1)
+        rows.append(observer.last_real_values(index, [references[signal] for signal in signals]))
+    return dict(zip(signals, np.array(rows).T, strict=True))
+
+
+def ecos_alone(path: Path, signals: Sequence[str], steps: int) -> Signals:
+    tool, rows = ecospy(), []
+    with tool.EcosSimulationStructure() as structure:
+        structure.add_model("one", path)
+        with tool.EcosSimulation(step_size=STEP, structure=structure) as simulation:
+            assert simulation.init()
+            for _ in range(steps):
+                simulation.step(1)
+                rows.append([simulation.get_real(f"one::{signal}") for signal in signals])
+            simulation.terminate()
+    return dict(zip(signals, np.array(rows).T, strict=True))
+
+
+def fmpy_alone(path: Path, signals: Sequence[str], steps: int) -> Signals:
+    rows = simulate_fmu(
+        path, stop_time=steps * STEP, output_interval=STEP, output=list(signals), fmi_type="CoSimulation"
+    )
+    return {signal: rows[signal][1:] for signal in signals}
+
+
+def omsimulator_alone(path: Path, signals: Sequence[str], steps: int) -> Signals:
+    library, value = oms_library(), ctypes.c_double()
+    assert library.oms_setTempDirectory(str(path.parent).encode()) == 0
+    assert library.oms_newModel(b"model") == 0
+    rows: dict[str, list[float]] = {signal: [] for signal in signals}
+    try:
+        assert library.oms_addSystem(b"model.root", WEAKLY_COUPLED) == 0
+        assert library.oms_addSubModel(b"model.root.one", str(path).encode()) == 0
+        assert library.oms_setFixedStepSize(b"model.root", ctypes.c_double(STEP)) == 0
+        assert library.oms_setResultFile(b"model", b"", 1) == 0
+        assert library.oms_instantiate(b"model") == library.oms_initialize(b"model") == 0
+        for step in range(1, steps + 1):
+            # it takes whole steps until it is there: half of one before, rounding decides nothing
+            assert library.oms_stepUntil(b"model", ctypes.c_double((step - 0.5) * STEP)) == 0
+            for signal, values in rows.items():
+                assert library.oms_getReal(f"model.root.one.{signal}".encode(), ctypes.byref(value)) == 0
+                values.append(value.value)
+    finally:
+        assert library.oms_delete(b"model") == 0
+    return {signal: np.array(values) for signal, values in rows.items()}
+
+
+def pyfmi_alone(path: Path, signals: Sequence[str], steps: int) -> Signals:
+    pyfmi = pytest.importorskip("pyfmi", reason="PyFMI is not installed: it has no wheel for this Python")
+    with contextlib.chdir(path.parent):  # it writes its log and its result where it stands
+        model = pyfmi.load_fmu(str(path), kind="CS")
+        options = model.simulate_options()
+        options["ncp"] = steps
+        found = model.simulate(start_time=0.0, final_time=steps * STEP, options=options)
+        return {signal: np.array(found[signal])[1:] for signal in signals}
+
+
+ALONE: dict[str, Alone] = {
+    "libcosim": libcosim_alone,
+    "ecos": ecos_alone,
+    "fmpy": fmpy_alone,
+    "OMSimulator": omsimulator_alone,
+    "PyFMI": pyfmi_alone,
+}
 
 
 # ---- the checkers

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from masters import MASTERS, demo, libcosimpy, ours
+from masters import MASTERS, demo, libcosimpy, ours, packed
 
 from loomfmu.cosim.importing.fmus import Fmu
 
@@ -26,7 +26,7 @@ ORDERS = {
 def test_mechanisms_at_their_own_speed_need_no_wire(tmp_path: Path, master: str) -> None:
     changed = {f"{name}.{key}": value for name in ("weft", "dobby", "belt") for key, value in ALONE.items()}
     scene = demo(1000, **changed)
-    expected, found = ours(scene, tmp_path), MASTERS[master](scene, tmp_path)
+    expected, found = ours(scene, tmp_path), MASTERS[master](scene, packed(scene, tmp_path))
     compared = [signal for signal in expected if signal.startswith(("weft.", "dobby."))]
     assert len(compared) > 10
     for signal in compared:
@@ -45,7 +45,7 @@ def test_a_wired_loom_converges_to_ours_with_the_step(tmp_path: Path, master: st
     away: dict[str, list[float]] = {signal: [] for signal in ORDERS}
     for steps in (500, 1000):
         scene = demo(steps)
-        expected, found = ours(scene, tmp_path), MASTERS[master](scene, tmp_path)
+        expected, found = ours(scene, tmp_path), MASTERS[master](scene, packed(scene, tmp_path))
         for signal, errors in away.items():
             difference = np.abs(found[signal] - expected[signal][1:])[steps // 500 - 1 :: steps // 500]
             errors.append(float(np.max(difference)))

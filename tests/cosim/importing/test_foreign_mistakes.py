@@ -16,10 +16,15 @@ THIRD = FMI3.format(fixed=FIXED)
 FILES = {
     "an FMI 1.0 FMU; only FMI 2.0 and 3.0 are supported": (
         '<fmiModelDescription fmiVersion="1.0" modelName="M" modelIdentifier="M" guid="g"'
-        ' numberOfContinuousStates="0" numberOfEventIndicators="0"><ModelVariables/></fmiModelDescription>'
+        ' numberOfContinuousStates="0" numberOfEventIndicators="0"><ModelVariables>'
+        + '<ScalarVariable name="twice" valueReference="0"><Real/></ScalarVariable>' * 2
+        + "</ModelVariables></fmiModelDescription>"
     ),
     "an FMU for scheduled execution; only co-simulation and model exchange are supported": THIRD.replace(
         "<CoSimulation", "<ScheduledExecution"
+    ),
+    "its modelDescription.xml cannot be read (an element lacks an attribute that FMI requires)": (
+        THIRD.replace('valueReference="0"', "")
     ),
     "its modelDescription.xml cannot be read (Unsupported FMI version: 4.0)": THIRD.replace('"3.0"', '"4.0"'),
 }

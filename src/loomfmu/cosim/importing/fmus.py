@@ -3,7 +3,6 @@
 import hashlib
 import math
 import os
-import re
 import zipfile
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
@@ -46,6 +45,7 @@ from .descriptions import (
 )
 from .facts import Facts, facts_of
 from .ports import Port, Value
+from .refusals import check_runnable, first_line, reading
 
 # outputs of a shaft: their units, and the outputs that are their rates
 SHAFT = {"angle": ("rad", "velocity"), "velocity": ("rad/s", "acceleration"), "acceleration": ("rad/s2", "")}
@@ -345,23 +345,22 @@ def _unpacked(path: Path) -> tuple[str, Path]:
     except LoomfmuError:  # of the cache
         raise
     except Exception as error:  # zipfile raises a dozen kinds for a damaged archive
-        raise LoomfmuError(f"{path}: not a readable FMU ({_first_line(error)})") from None
+        raise LoomfmuError(f"{path}: not a readable FMU ({first_line(error)})") from None
     if not found:
         raise LoomfmuError(f"{path}: not a readable FMU (it has no modelDescription.xml)")
     return sha256, directory
 
 
 def _read(path: Path, sha256: str, directory: Path) -> Fmu:
-    try:
+    with reading(path):
         description = described(directory)
+    check_runnable(path, description)
+    with reading(path):
         ours, fmi = is_ours(description), int(description.fmiVersion[0])
         trusted = ours and is_our_build(path, description.modelName, fmi)
         component = COMPONENTS[description.modelName] if trusted else None
         ports = ports_of(description, component)
         tolerance = tolerance_of(description)
-    except Exception as error:  # fmpy raises its own kinds for a description that is none
-        raise LoomfmuError(f"{path}: its modelDescription.xml cannot be read ({_reason(error)})") from None
-    _check_runnable(path, description)
     stepped = description.coSimulation
     kind = stepped or description.modelExchange
     return Fmu(
@@ -381,34 +380,3 @@ def _read(path: Path, sha256: str, directory: Path) -> Fmu:
             path, sha256, directory, description.guid, kind.modelIdentifier, description.version or ""
         ),
     )
-
-
-def _reason(error: Exception) -> str:
-    """The first line of an error, and of a list that follows its first entry."""
-    lines = str(error).splitlines()
-    heading = len(lines) > 1 and lines[0].endswith(":")
-    return f"{lines[0]} {lines[1].strip(' -')}" if heading else _first_line(error)
-
-
-def _first_line(error: Exception) -> str:
-    reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
-    return str(reason).splitlines()[0]
-
-
-def _check_runnable(path: Path, description: Any) -> None:
-    """Refuse what the master cannot step."""
-    version, kind = description.fmiVersion, description.coSimulation or description.modelExchange
-    if version == "1.0":
-        raise LoomfmuError(f"{path}: an FMI 1.0 FMU; only FMI 2.0 and 3.0 are supported")
-    if kind is None:
-        raise LoomfmuError(
-            f"{path}: an FMU for scheduled execution; only co-simulation and model exchange are supported"
-        )
-    clocks = [each.name for each in description.modelVariables if each.type == "Clock"]
-    if clocks and not description.coSimulation:
-        raise LoomfmuError(f"{path}: {clocks[0]} is a clock; model exchange with clocks is not supported")
-    if not re.fullmatch("[A-Za-z_][A-Za-z0-9_]*", kind.modelIdentifier or ""):
-        raise LoomfmuError(
-            f"{path}: modelIdentifier = {shown(kind.modelIdentifier)} is not a C identifier;"
-            " it must name a library of the FMU by letters, digits and _, and no digit first"
-        )

@@ -1,0 +1,114 @@
+"""The page with all that was tried, written whole from what the trials said."""
+
+import math
+from collections import Counter
+from collections.abc import Iterable
+from typing import Any
+
+Said = dict[str, Any]
+
+HEAD = """# Other tools
+
+`make foreign` writes this page from trials, each in a process of its own.
+[The guide](../docs/importing.md) says how to use the tools.
+
+## Our FMUs in other tools
+
+The worst difference from our own run in any real output, by the largest value of that output, in {steps}
+steps of 0.1 ms; 0 is equal to the last bit. "One FMU" is `WeftInsertion`. The package is a shaft that drives
+a weft insertion and, over a dobby, a heald frame, where each wire is a step late: compared are all outputs of
+the first three and the lift of the frame, from the third step on, since some tools start wires at 0. The
+whole loom is the demo as one FMU. FMI is 2.0 where nothing else is said, and packages are of SSP 1.0, with
+FMUs of FMI 3.0 of SSP 2.0.
+"""
+CHECKERS = """
+## Checkers
+
+The native FMUs in which a checker finds no fault: all components, and the demo as one FMU.
+"""
+OTHERS = """
+## FMUs of other makers in our scenes
+
+Each FMU runs by itself, in the steps of its default experiment, at most {most}, to the tolerance that it
+states. The difference is the worst from fmpy in any recorded variable, by the largest value of that variable.
+fmpy hands over steps that differ in their last bits; an FMU with a solver inside makes more of that. What
+supports model exchange (ME) alone is solved here, and by CVODE in fmpy. Of {count} FMUs {ran} run in both,
+{refused} are refused by us{rest}.
+"""
+
+
+def written(
+    masters: dict[str, dict[str, Said]],
+    checkers: dict[str, dict[str, Said]],
+    releases: dict[str, str],
+    found: list[Said],
+    steps: int,
+    most: int,
+) -> str:
+    """The page."""
+    cases = list(next(iter(masters.values())))
+    kinds = Counter(kind(said) for said in found)
+    others = {
+        **{"count": len(found), "ran": kinds.pop("ran", 0), "refused": kinds.pop("refused", 0), "most": most},
+        "rest": "".join(f", {number} {each}" for each, number in sorted(kinds.items())),
+    }
+    return "\n".join(
+        [
+            HEAD.format(steps=steps),
+            table(
+                ["tool", "version", *cases],
+                (
+                    [tool, releases[tool] or "not run", *map(cell, said.values())]
+                    for tool, said in masters.items()
+                ),
+            ),
+            *(f"\n{tool}: {reason}." for tool, said in masters.items() for reason in absent(said)),
+            CHECKERS,
+            table(
+                ["checker", "version", "FMI 2.0", "FMI 3.0"],
+                (
+                    [name, releases[name] or "not run", *map(cell, said.values())]
+                    for name, said in checkers.items()
+                ),
+            ),
+            OTHERS.format(**others),
+            table(
+                ["FMU", "made by", "FMI", "offers", "steps", "signals", "difference, or why not"],
+                (
+                    [
+                        str(said.get(each, ""))
+                        for each in ("FMU", "maker", "FMI", "offers", "steps", "signals")
+                    ]
+                    + [cell(said)]
+                    for said in sorted(found, key=lambda said: said["FMU"])
+                ),
+            ),
+            "",
+        ]
+    )
+
+
+def kind(said: Said) -> str:
+    """What a trial of an FMU of others came to, in a word."""
+    return "refused" if "refused" in said else "ran" if "said" not in said else "run in ours alone"
+
+
+def absent(said: dict[str, Said]) -> set[str]:
+    """Why a tool was not tried."""
+    return {each["absent"] for each in said.values() if "absent" in each}
+
+
+def cell(said: Said) -> str:
+    """What a trial came to."""
+    if reason := said.get("refused") or said.get("said"):
+        return str(reason)
+    if "number" in said:
+        return str(said["number"])
+    worst = said.get("difference", math.nan)
+    return "-" if math.isnan(worst) else "0" if worst == 0.0 else f"{worst:.0e}"
+
+
+def table(heads: list[str], rows: Iterable[list[str]]) -> str:
+    """A table in Markdown."""
+    lines = [heads, ["---"] * len(heads), *rows]
+    return "\n".join("| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |" for line in lines)
