@@ -53,6 +53,15 @@ def test_fmus_that_cannot_be_run_are_told(tmp_path: Path, said: str) -> None:
     assert refused(tmp_path, MOTOR) == f"motor.fmu: {tmp_path}/Motor.fmu: {said}"
 
 
+@pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
+def test_clocks_are_refused(tmp_path: Path, kind: str) -> None:
+    clock = '<Clock name="tick" valueReference="9" causality="input" intervalVariability="constant"/>'
+    text = THIRD.replace("</ModelVariables>", f"{clock}</ModelVariables>")
+    bad(tmp_path, text.replace("<CoSimulation", f"<{kind}"))
+    said = f"motor.fmu: {tmp_path}/Motor.fmu: tick is a clock; FMUs with clocks are not supported"
+    assert refused(tmp_path, MOTOR) == said
+
+
 def test_an_fmu_without_a_library_for_this_machine_is_refused_with_what_it_has(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

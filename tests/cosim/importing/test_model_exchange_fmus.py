@@ -10,7 +10,6 @@ import fmpy
 import numpy as np
 import pytest
 from foreign_motors import library, packed
-from motor_scenes import refused
 from scipy.integrate import solve_ivp
 
 from loomfmu import LoomfmuError
@@ -211,11 +210,3 @@ def test_a_loop_is_iterated_from_saved_states(tmp_path: Path, fmi: int) -> None:
 def test_failures_have_one_line(tmp_path: Path, tables: str, defines: list[str], said: str) -> None:
     with pytest.raises(LoomfmuError, match=said):
         solved(exchanged(tmp_path, "OSCILLATOR", 2, *defines), tables)
-
-
-def test_clocks_are_refused(tmp_path: Path) -> None:
-    clock = '<Clock name="tick" valueReference="9" causality="input" intervalVariability="triggered"/>'
-    text = description("BALL", 3).replace("</ModelVariables>", f"{clock}</ModelVariables>")
-    packed(tmp_path / "BALL.fmu", text, b"", "BALL", "x86_64-linux")
-    said = refused(tmp_path, 'duration = 1\nstep = 0.1\n[it]\nfmu = "BALL.fmu"\n')
-    assert said.endswith("BALL.fmu: tick is a clock; model exchange with clocks is not supported")

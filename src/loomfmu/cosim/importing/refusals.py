@@ -43,8 +43,8 @@ def check_runnable(path: Path, description: Any) -> None:
             f"{path}: an FMU for scheduled execution; only co-simulation and model exchange are supported"
         )
     clocks = [each.name for each in description.modelVariables if each.type == "Clock"]
-    if clocks and not description.coSimulation:
-        raise LoomfmuError(f"{path}: {clocks[0]} is a clock; model exchange with clocks is not supported")
+    if clocks:  # FMI 3.0 requires event mode for them
+        raise LoomfmuError(f"{path}: {clocks[0]} is a clock; FMUs with clocks are not supported")
     if not re.fullmatch("[A-Za-z_][A-Za-z0-9_]*", kind.modelIdentifier or ""):
         raise LoomfmuError(
             f"{path}: modelIdentifier = {shown(kind.modelIdentifier)} is not a C identifier;"
