@@ -134,7 +134,6 @@ def test_driven_inputs_repeat_in_each_row() -> None:
     [
         (lambda folder: parsed(unsolved(0.5, 0.6)), "the wires close a loop"),
         (lambda folder: belt(accuracy=0.01), "the steps are chosen anew"),
-        (lambda folder: belt(grid="windows"), "the steps are chosen anew"),
     ],
 )
 def test_scenes_that_are_run_row_by_row_say_why(scene: Any, why: str, tmp_path: Path) -> None:

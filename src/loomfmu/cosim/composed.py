@@ -5,7 +5,7 @@ at any time, and these a cubic from one time to the next, with what it may be of
 value may lie, the step is divided until that is rounding. What is left is the error of the verdict.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -72,6 +72,13 @@ class Composed:
         ports = {name: output_port(self._scene, name, "claim") for name in names}
         return {name for name, port in ports.items() if not (port.rate or any(port.beside))}
 
+    @property
+    def alone(self) -> set[int]:
+        """The claims, by their numbers, that nothing else judges between samples."""
+        return {
+            n for n, each in self.claims.items() if self.unrated.intersection(each.signals(self._requested))
+        }
+
     # ---- what follows from the time
 
     def _follows(self, claim: Claim) -> bool:
@@ -136,29 +143,32 @@ class Composed:
 
     # ---- verdicts
 
-    def judged(self, scene: Scene, run: Signals) -> dict[int, Verdict]:
-        """Judge the claims on a run of this scene, which differs in values alone, by their numbers."""
-        if not self.claims:
+    def judged(self, scene: Scene, run: Signals, wanted: Iterable[int]) -> dict[int, Verdict]:
+        """Judge the wanted ones of the claims on a run of this scene, which differs in values alone."""
+        claims = {number: self.claims[number] for number in wanted if number in self.claims}
+        if not claims:
             return {}
         times = self._equal(scene, run)
         if len(times) * len(self._signals) > MOST_VALUES:
             why = "numerical error not estimated: the run is too long"
-            return {number: undecided(claim.judge(run), why) for number, claim in self.claims.items()}
-        samples, left = self._divided(scene, run, times)
+            return {number: undecided(claim.judge(run), why) for number, claim in claims.items()}
+        samples, left = self._divided(scene, run, times, claims)
         return {
             number: claim.settled(samples, claim.judge(samples), 0.0, SHARE, 0.0, left[number])
-            for number, claim in self.claims.items()
+            for number, claim in claims.items()
         }
 
-    def _divided(self, scene: Scene, run: Signals, times: Floats) -> tuple[Resampled, dict[int, float]]:
+    def _divided(
+        self, scene: Scene, run: Signals, times: Floats, claims: Mapping[int, Claim]
+    ) -> tuple[Resampled, dict[int, float]]:
         """Return samples that show the worst values of all claims, and how far these may be off."""
         jets = self._at(scene, np.union1d(times, self._worst_samples(run)))
         jets = jets.with_more(self._at(scene, self._edges(scene, self._samples(run, jets))))
-        left, unsure = dict[int, float](), [*self.claims]
+        left, unsure = dict[int, float](), [*claims]
         for _ in range(ROUNDS):
             samples, doubtful = self._samples(run, jets), np.zeros(len(jets.time) - 1, dtype=bool)
             for number in [*unsure]:
-                cells, left[number] = self._doubtful(self.claims[number], samples)
+                cells, left[number] = self._doubtful(claims[number], samples)
                 doubtful |= cells
                 if not cells.any():
                     unsure.remove(number)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections import OrderedDict
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import ExitStack
 from functools import cached_property, partial
 from pathlib import Path
@@ -84,7 +84,7 @@ class Pattern:
     def rows(self) -> RowsInC:
         """The same for many values at once."""
         stepping = self.stepping(self.judged)
-        return RowsInC(self._requested, self._all, self._estimates, self._rates, stepping, self.values)
+        return RowsInC(self._requested, self._all, self._estimates, self._composed, stepping, self.values)
 
     def stepping(self, signals: Sequence[str]) -> Stepping:
         """Return the stepping of the scene with only the parts that these signals need."""
@@ -114,8 +114,14 @@ class Pattern:
 
     def _verdicts(self, scene: Scene, trace: Signals) -> tuple[Verdict, ...]:
         """The verdicts on a run, with the errors of those that need no other one."""
-        known = self._composed.judged(scene, trace)
-        return tuple(known[n] if n in known else each.judge(trace) for n, each in enumerate(self._all))
+        return self._exact(scene, trace, self._judged(trace), self._composed.claims)
+
+    def _exact(
+        self, scene: Scene, trace: Signals, verdicts: tuple[Verdict, ...], wanted: Iterable[int]
+    ) -> tuple[Verdict, ...]:
+        """The verdicts, those wanted by the mechanisms' own functions where they are judged so."""
+        known = self._composed.judged(scene, trace, wanted)
+        return tuple(known.get(number, each) for number, each in enumerate(verdicts))
 
     @property
     def _by_steps(self) -> list[int]:
@@ -131,14 +137,14 @@ class Pattern:
         grid = uniform(scene)
         found = self._in_memory(scene, grid)
         run = found.recording
-        verdicts = self._verdicts(scene, run)
+        verdicts = self._judged(run)
         near = self._estimates.near(scene, run, verdicts)
-        wanted: Collection[int] = {
-            "all": self._by_steps,
-            "near": near.intersection(self._by_steps),
-            "none": (),
-        }[errors]
-        coarser = known or self._estimates.coarser(scene, grid, wanted)
+        wanted = {"all": {*range(len(verdicts))}, "near": near, "none": set[int]()}[errors]
+        # steps that an accuracy chose are too few for any other way
+        every = scene.accuracy is not None
+        exact = {n for n, each in enumerate(verdicts) if n in wanted or every or not each.decided}
+        verdicts = self._exact(scene, run, verdicts, exact)
+        coarser = known or self._estimates.coarser(scene, grid, wanted.intersection(self._by_steps))
         verdicts = self._estimates.of(scene, run, verdicts, coarser)
         return Evaluation(
             scene,

@@ -21,6 +21,7 @@ from ..traces import Recording
 from .claims.claim import Claim
 from .claims.judging import Form, run_of
 from .claims.movers import whole_turn
+from .composed import Composed
 from .dependence import TOO_LONG
 from .estimates import Estimates, coarseness, usual
 from .importing.slave import Slave
@@ -31,11 +32,10 @@ from .master.steppers import SOURCE
 from .planning.plan import Stepping
 from .planning.pruning import Pruned
 from .planning.requested import Movements, Requested, parameter_of
-from .rates import Rates
 from .scenes.graph import step_order
 from .scenes.instances import Instance, altered
 from .scenes.scene import Scene
-from .scenes.settings import SLOWEST, UNIFORM
+from .scenes.settings import SLOWEST
 from .scenes.values import Values
 
 Floats = NDArray[np.float64]
@@ -68,12 +68,12 @@ class RowsInC:
         requested: Requested,
         claims: Sequence[Claim],
         estimates: Estimates,
-        rates: Rates,
+        composed: Composed,
         stepping: Stepping,
         values: Values,
     ):
         self._requested, self._claims, self._values = requested, claims, values
-        self._estimates, self._rates, self._stepping = estimates, rates, stepping
+        self._estimates, self._composed, self._stepping = estimates, composed, stepping
         self._tried = self._final = 0  # rows that were run, and those that need not be run again
 
     @property
@@ -92,10 +92,10 @@ class RowsInC:
         scene = self._requested.scene
         if scene.package is not None:
             return "a system package is read anew for each row"
-        if scene.accuracy is not None or scene.grid != UNIFORM:
+        if scene.accuracy is not None:
             return "the steps are chosen anew for each row"
-        if self._rates.signals:
-            return f"the rate of {self._rates.signals[0]} is found in Python"
+        for number in self._composed.alone:
+            return f"{self._claims[number].name or f'claim {number + 1}'} is judged by functions of the time"
         for name, instance in scene.instances.items():
             fmu = instance.fmu
             if not fmu.trusted or fmu.flavour != "native" or fmu.fmi != 2 or scene.isolates(name):

@@ -228,7 +228,9 @@ def test_numbers_that_were_probably_meant_in_another_unit_are_doubted() -> None:
 
 
 def test_a_claim_that_cannot_be_judged_says_why() -> None:
-    scene = parse(SPRUNG + claims({"name": "margin", "kind": "lowest_margin", "bound": 0.1}))
+    scene = parse(
+        SPRUNG + claims({"name": "load", "kind": "below", "signal": "damper_1.peak_load", "bound": "1e6 N"})
+    )
     found = limit(scene, vary="shaft.speed=300rpm..400rpm", set={"steps_per_revolution": 15}, points=3)
     assert not found and math.isnan(found.claims[0].verdict.distance)
     assert "undecided: the samples are too far apart to be sure; take more steps" in found._repr_html_()
