@@ -49,7 +49,7 @@ class Composed:
     def __init__(self, requested: Requested, claims: Sequence[Claim]):
         self._scene, self._requested = requested.scene, requested
         self.claims = {number: each for number, each in enumerate(claims) if self._follows(each)}
-        wanted = requested.needed(self.claims.values(), ())
+        wanted = requested.needed(self.claims.values(), ()) if self.claims else ()
         self._latches = {name: found for name in wanted if (found := self._held(name))}
         bases = [base for base, _sign in self._latches.values()]
         owners = {name.partition(".")[0] for name in wanted}
@@ -124,11 +124,13 @@ class Composed:
         """Return whether an output is a real number that samples show."""
         variable, port = self._variable(signal), output_port(self._scene, signal, "claim")
         known = port.causality == "output" and port.kind == "Real" and not any(port.beside[:2])
-        return known and not variable.brief and not self._remembers(signal)
+        return known and variable is not None and not variable.brief and not self._remembers(signal)
 
     def _held(self, signal: str) -> tuple[str, float] | None:
         """Return the output of which this one holds the lowest values, or with -1 the highest ones."""
         variable = self._variable(signal)
+        if variable is None:
+            return None
         for base, sign in ((variable.lowest_of, 1.0), (variable.highest_of, -1.0)):
             name = f"{signal.partition('.')[0]}.{base}"
             if base and variable.type is float and self._is_smooth(name):
