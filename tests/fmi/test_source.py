@@ -104,6 +104,14 @@ def test_flattened_bell_rings_the_same():
     assert vars(flat) == {variable.name: getattr(bell, variable.name) for variable in variables_of(Bell)}
 
 
+def test_docstrings_may_have_backslashes_and_quotes():
+    @dataclass(slots=True)
+    class Odd(Bell):
+        r"""The angle \xi of a "crank\""""
+
+    assert run(flatten(Odd))["Odd"].__doc__ == Odd.__doc__
+
+
 def test_functions_stand_before_those_that_call_them():
     text = flatten(Bell)
     parts = ("from math", "GAIN = 2.5", "def doubled", "def waved", "class Bell")

@@ -184,7 +184,7 @@ def _record(record: type) -> str:
     given = ", ".join(
         f"{name}: {inspect.formatannotation(kind).rpartition('.')[2]}" for name, kind in kinds.items()
     )
-    lines = [f"class {record.__name__}:", f'    """{record.__doc__}"""', ""]
+    lines = [f"class {record.__name__}:", f"    {record.__doc__!r}", ""]
     lines += [f"    __slots__ = {tuple(kinds)!r}", "", f"    def __init__(self, {given}) -> None:"]
     return "\n".join([*lines, *(f"        self.{name} = {name}" for name in kinds)]) + "\n"
 
@@ -196,7 +196,7 @@ def _place(function: FunctionType) -> str:
 
 def _class(component: type[Component], methods: dict[str, FunctionType]) -> str:
     """The class with its fields and methods."""
-    lines = [f"class {component.__name__}:", f'    """{component.__doc__}"""', ""]
+    lines = [f"class {component.__name__}:", f"    {component.__doc__!r}", ""]
     lines += ["    def __init__(self) -> None:"]
     lines += [f"        self.{variable.name} = {variable.start!r}" for variable in variables_of(component)]
     lines += [_array(name, variables) for name, variables in arrays_of(component).items()]
