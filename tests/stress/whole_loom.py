@@ -4,6 +4,7 @@ from collections.abc import Iterable, Iterator
 from math import fabs, isfinite, pi
 from typing import Any
 
+from driven_reference import ROTOR
 from driving import declared
 
 from loomfmu import units
@@ -22,17 +23,7 @@ WIRES: dict[str, dict[str, tuple[str, str]]] = {
     "BeltMonitor": SHAFT | {name: ("WeftInsertion", name) for name in ("travel", "velocity", "acceleration")},
     "WeftTension": SHAFT | {name: ("WeftInsertion", name) for name in ("travel", "velocity", "acceleration")},
     "DobbyDrive": SHAFT,
-    "HealdFrame": {
-        name: ("DobbyDrive", name)
-        for name in (
-            "rotor_angle",
-            "rotor_velocity",
-            "rotor_acceleration",
-            "lift_fraction",
-            "lift_rate",
-            "lift_acceleration",
-        )
-    },
+    "HealdFrame": {name: ("DobbyDrive", name) for name in ROTOR},
     "WarpTension": FRAME,
     "HealdDamper": FRAME | {"warp_force": ("WarpTension", "frame_load")},
     "PatternLock": SHAFT,
