@@ -21,7 +21,19 @@ from loomfmu.declaring.variables import variables_of
 from loomfmu.fmi.description.documentation import limits_text, start_text
 from loomfmu.loom.standard_loom import LOOM_KEYS
 
-DESIGN = ("loom", "buckling", "shed", "cam", "cam_export", "rocker_cam", "guidance", "dobby", "loads", "reed")
+DESIGN = (
+    "loom",
+    "buckling",
+    "shed",
+    "cam",
+    "cam_export",
+    "rocker_cam",
+    "contact",
+    "guidance",
+    "dobby",
+    "loads",
+    "reed",
+)
 CHOICES = {"coupling": COUPLINGS, "grid": GRIDS}
 
 

@@ -33,6 +33,8 @@ class RockerCam:
     distance: float
     arm: float
     roller_radius: float
+    swing: float
+    trailing: bool
     angle: Floats
     swing_angle: Floats
     profile: Floats
@@ -114,6 +116,8 @@ def design_rocker_cam(
         distance=apart,
         arm=length,
         roller_radius=roller,
+        swing=span,
+        trailing=trailing,
         angle=angle,
         swing_angle=psi,
         profile=_points(centre - roller * normal),

@@ -8,6 +8,7 @@ from scipy.optimize import minimize_scalar
 
 from loomfmu.components.dobby.drive import DobbyDrive
 from loomfmu.design.cam import TURN, Cam, design_cam, published_path
+from loomfmu.design.contact import radial_contact
 from loomfmu.physics.rotor_laws.shed_cam import SPLINE_CAM
 from validation.computed import rotor
 
@@ -131,3 +132,15 @@ def misfit() -> float:
         return float(np.max(np.abs(found - radius)))
 
     return min(off(sense, TURN * k / 720) for sense in (1, -1) for k in range(720))
+
+
+def contact(speed: float) -> SimpleNamespace:
+    """Highest values of the contact of the cam of Appendix 2 with one frame, at a shaft speed [SI]."""
+    of = cam()
+    mass = 15.0 * (span() / (of.highest_radius - of.lowest_radius)) ** 2
+    found = radial_contact(of, speed=speed, mass=mass, load="10 kN", width="30 mm")
+    return SimpleNamespace(
+        highest_pressure=found.highest_pressure,
+        highest_force=float(found.force.max()),
+        highest_sliding_speed=float(found.sliding_speed.max()),
+    )
