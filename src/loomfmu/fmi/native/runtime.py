@@ -43,7 +43,7 @@ def needing_all() -> dict[str, str]:
 
 
 def made() -> bytes:
-    """Make what is kept anew. Dates are fixed, so that the same parts give the same bytes."""
+    """The parts that are kept, made anew. Dates are fixed, so that the same parts give the same bytes."""
     file = io.BytesIO()
     with zipfile.ZipFile(file, "w") as archive:
         archive.comment = compiler_version().encode()
