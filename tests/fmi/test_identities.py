@@ -14,7 +14,7 @@ from loomfmu.fmi.native import native_fmu
 @pytest.fixture
 def anew(monkeypatch: pytest.MonkeyPatch) -> None:
     """Nothing is remembered of what was read before."""
-    for name in ("sources", "_all", "_shipped"):
+    for name in ("sources", "_kept", "_shipped"):
         monkeypatch.setattr(identities, name, getattr(identities, name).__wrapped__)
 
 

@@ -1,6 +1,6 @@
 """The identity of each build of our own FMUs, computed once for a state of their sources.
 
-Flattening and describing all components takes two seconds; reading the files that it depends on takes
+Flattening and describing a component takes a tenth of a second; reading the files that it depends on takes
 a few milliseconds. So what was computed is kept under a digest of these files: in the package, if it brings
 its FMUs, or in the cache.
 """
@@ -10,7 +10,7 @@ import json
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from .. import components
 from ..cache.entries import IDENTITIES, made_file
@@ -51,14 +51,14 @@ def identity(component: type[Component]) -> Identity:
 
     Raises LoomfmuError for one that cannot be carried into an FMU.
     """
-    return _all()["fmus"][component.__name__] if is_own(component) else _computed(component)
+    return _kept(component.__name__)["fmu"] if is_own(component) else _computed(component)
 
 
 def needs(component: type[Component]) -> Mapping[str, frozenset[str]]:
     """On what each output of a component depends over several steps, as `dependencies` says."""
     if not is_own(component):
         return dependencies(component, many_steps=True)
-    kept = _all()["needs"][component.__name__]
+    kept = _kept(component.__name__)["needs"]
     return {output: frozenset(names.split()) for output, names in kept.items()}
 
 
@@ -89,7 +89,8 @@ def documents() -> Path:
 
 def write(directory: Path) -> None:
     """Keep the identities in a package that brings its FMUs."""
-    replace_file(directory / "identities.json", _everything())
+    kept = {"sources": sources(), "of": {name: _of(name) for name in components.COMPONENTS}}
+    replace_file(directory / "identities.json", json.dumps(kept, indent=1).encode())
 
 
 def _files(part: Path) -> list[Path]:
@@ -99,12 +100,14 @@ def _files(part: Path) -> list[Path]:
 
 
 @cache
-def _all() -> dict[str, Any]:
+def _kept(name: str) -> dict[str, Any]:
+    """The identity of a component and the needs of its outputs, as they are kept."""
     found = _shipped()
-    if found is None:
-        key = hashlib.sha256("\n".join([sources(), *map(stamp, TOOLS)]).encode()).hexdigest()
-        found = json.loads(made_file(IDENTITIES, key, "identities.json", _everything).read_bytes())
-    return found
+    if found is not None:
+        return cast(dict[str, Any], found["of"][name])
+    key = hashlib.sha256("\n".join([name, sources(), *map(stamp, TOOLS)]).encode()).hexdigest()
+    made = made_file(IDENTITIES, key, "identity.json", lambda: json.dumps(_of(name)).encode())
+    return cast(dict[str, Any], json.loads(made.read_bytes()))
 
 
 @cache
@@ -117,14 +120,11 @@ def _shipped() -> dict[str, Any] | None:
         return None
 
 
-def _everything() -> bytes:
-    known = components.COMPONENTS.items()
-    fmus = {name: _computed(component) for name, component in known}
-    found = {name: dependencies(component, many_steps=True) for name, component in known}
-    needed = {
-        name: {output: " ".join(sorted(each)) for output, each in of.items()} for name, of in found.items()
-    }
-    return json.dumps({"sources": sources(), "fmus": fmus, "needs": needed}, indent=1).encode()
+def _of(name: str) -> dict[str, Any]:
+    component = components.COMPONENTS[name]
+    found = dependencies(component, many_steps=True)
+    needed = {output: " ".join(sorted(names)) for output, names in found.items()}
+    return {"fmu": _computed(component), "needs": needed}
 
 
 def _computed(component: type[Component]) -> Identity:
