@@ -86,6 +86,8 @@ def test_an_expression_has_the_unit_that_its_signals_give(text: str, unit: str) 
         ("lift - a.x", "has 'lift', which is not a signal such as heald_1.lift"),
         ("_0 - a.x", "has '_0', which is not a signal such as heald_1.lift"),
         ("5 mm - 3 mm", "has no signal in it"),
+        ("3 mm", "has no signal in it"),
+        (" ", "has no signal in it"),
         ("a.x ** 2", "is not an expression of +, -, *, /, abs"),
         ("(a.x if a.x else b.x)", "is not an expression of"),
         ("a.x - [1][0]", "is not an expression of"),

@@ -49,8 +49,10 @@ def test_a_trace_is_a_measurement(tmp_path: Path) -> None:
     [
         ("", "the file is empty"),
         ('time [s],belt.margin [1]\n0,"' + 200_000 * "1" + '"\n', "line 2: not a table \\(field larger"),
-        ("shaft_angle [deg],belt.margin\n0,1\n", "column 'belt.margin' has no unit"),
-        ("shaft_angle,belt.margin [1]\n0,1\n", "column 'shaft_angle' has no unit"),
+        ("shaft_angle [deg],belt.margin\n0,1\n", r"'belt.margin' has no unit; .* 'belt.margin \[1\]'$"),
+        ("time [s],belt.axial_force\n0,1\n", r"such as 'belt.axial_force \[N\]'$"),
+        ("time [s],belt.force\n0,1\n", r"such as 'belt.force \[mm\]', or \[1\] for a pure number$"),
+        ("shaft_angle,belt.margin [1]\n0,1\n", r"'shaft_angle' has no unit; .* 'shaft_angle \[deg\]'$"),
         ("angle [deg],belt.margin [1]\n0,1\n", "the first column is 'angle', not shaft_angle or time"),
         ("shaft_angle [s],belt.margin [1]\n0,1\n", "column shaft_angle is in 's', which does not fit rad"),
         ("time [s],belt.free_length [N]\n0,1\n", "column belt.free_length is in 'N', which does not fit m"),

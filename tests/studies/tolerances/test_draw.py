@@ -130,7 +130,11 @@ def test_a_worst_case_needs_ends() -> None:
         ),
         ('{ measured = "none.csv" }', "none.csv: cannot be read"),
         ('{ measured = "other.csv" }', "it has belt.head_mass, but none is called belt.guide_clearance"),
-        ('{ measured = "plain.csv" }', "column 'belt.guide_clearance' has no unit; write it in brackets"),
+        (
+            '{ measured = "plain.csv" }',
+            "'belt.guide_clearance' has no unit; write it in brackets, such as 'belt.guide_clearance [mm]'",
+        ),
+        ('{ norml = ["0.35 mm", "0.05 mm"] }', "belt.guide_clearance has no 'norml'; did you mean 'normal'?"),
         ('{ measured = "grams.csv" }', "is in 'g', which does not fit m"),
         ('{ measured = "gap.csv" }', "belt.guide_clearance has no value in some row"),
         ('{ measured = "negative.csv" }', "belt.guide_clearance = -0.3 mm is outside"),

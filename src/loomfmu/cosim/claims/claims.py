@@ -42,7 +42,7 @@ def read(table: Mapping[str, Any], unit_of: Callable[[str], str], directory: Pat
     for name in table:
         if name not in arguments and name != "kind":
             raise LoomfmuError(f"{where} has no {name!r}{suggestion(name, arguments)}")
-    if kind in of_expression and is_expression(str(table.get("signal", ""))):
+    if kind in of_expression and is_expression(str(table.get("signal", "missing"))):
         signal = expressions.read(table["signal"], unit_of, f"{where}: signal")
         table, chosen = {**table, "signal": signal}, of_expression[kind]
     for each in fields(chosen):

@@ -34,8 +34,8 @@ _NUMBER = re.compile(
 
 
 def is_expression(signal: str) -> bool:
-    """Return whether a text is more than the name of a signal."""
-    return re.search(r"[-+*/(),]", signal) is not None
+    """Return whether a text is more than the name of a signal, or cannot be one."""
+    return re.search(r"[-+*/(),]|^\s*(?![^\W\d_])", signal) is not None
 
 
 @dataclass(frozen=True)
@@ -228,6 +228,8 @@ class _Reader:
         if len(self._text) > LONGEST:
             raise self._refused(f"has {len(self._text)} characters; at most {LONGEST} are possible")
         plain = _NUMBER.sub(self._quantity, self._text).strip()
+        if not plain:
+            raise self._refused("has no signal in it")
         try:
             return self._read(ast.parse(plain, mode="eval").body, DEEPEST)
         except (MemoryError, RecursionError):

@@ -4,6 +4,7 @@ import csv
 import math
 import re
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
@@ -137,12 +138,12 @@ def _headings(
     where: str, heading: Sequence[str], scene: Scene
 ) -> tuple[str, float, dict[str, tuple[int, float]]]:
     """Return the axis of the first column with its factor, and of each signal its column and factor to SI."""
-    over, unit = named_column(where, heading[0])
+    over, unit = named_column(where, heading[0], "deg" if heading[0].strip() == "shaft_angle" else "s")
     if over not in ALONG:
         raise LoomfmuError(f"{where}: the first column is {shown(over)}, not shaft_angle or time; {FORM}")
     named: dict[str, tuple[int, float]] = {}
     for place, text in enumerate(heading[1:], start=1):
-        name, stated = named_column(where, text)
+        name, stated = named_column(where, text, _display(scene, text.strip()))
         if name in named:
             raise LoomfmuError(f"{where}: two columns are called {name}")
         port = output_port(scene, name, f"{where}")
@@ -152,13 +153,21 @@ def _headings(
     return over, factor_to(where, over, unit, ALONG[over]), named
 
 
-def named_column(where: str, text: str) -> tuple[str, str]:
-    """A column's name and unit. Raises LoomfmuError for one without."""
+def _display(scene: Scene, signal: str) -> str:
+    """The unit that people read a signal in; empty where the scene has no such signal."""
+    with suppress(LoomfmuError):
+        return output_port(scene, signal, "").display
+    return ""
+
+
+def named_column(where: str, text: str, display: str = "") -> tuple[str, str]:
+    """A column's name and unit. Raises LoomfmuError for one without, with the unit to `display`, if known."""
     match = _COLUMN.fullmatch(text.strip())
     if match is None:
+        usual = shown(f"{text.strip()} [{display or 'mm'}]")
+        pure = "" if display else ", or [1] for a pure number"
         raise LoomfmuError(
-            f"{where}: column {shown(text.strip())} has no unit; write it in brackets, such as"
-            f" {shown(text.strip() + ' [mm]')}, or [1] for a pure number"
+            f"{where}: column {shown(text.strip())} has no unit; write it in brackets, such as {usual}{pure}"
         )
     return match.group(1).strip(), match.group(2).strip()
 

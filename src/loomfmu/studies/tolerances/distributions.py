@@ -108,7 +108,8 @@ def _range(variable: Varied, low: float, high: float) -> str:
 def _measured(variable: Varied, path: Path, where: str) -> Distribution:
     """The values of a column of a CSV file, each as likely as any other."""
     heading, *rows = rows_of(path, MEASURED)
-    names = [named_column(heading[0], each) for each in heading[1]]
+    own = {variable.key: variable.shown_unit}
+    names = [named_column(heading[0], each, own.get(each.strip(), "")) for each in heading[1]]
     places = [place for place, (name, _unit) in enumerate(names) if name == variable.key]
     if len(places) != 1:
         many = "several columns are" if places else f"it has {listed(name for name, _ in names)}, but none is"
