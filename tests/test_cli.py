@@ -9,30 +9,45 @@ import pytest
 from loomfmu.cli import main
 
 
-@pytest.mark.parametrize("arguments", [["spin"], ["run"], ["run", "a", "b"], ["build", "--outpt", "x"]])
-def test_a_command_that_is_none_returns_2(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit) as raised:
-        main(arguments)
-    assert raised.value.code == 2
-    assert "usage: loomfmu" in capsys.readouterr().err
-
-
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("words", "said"),
     [
-        (["rnu", "x.toml"], "loomfmu: error: argument COMMAND: 'rnu' is unknown; did you mean 'run'?"),
+        ("spin", "loomfmu: there is no command 'spin'; did you mean "),
+        ("rnu x.toml", "loomfmu: there is no command 'rnu'; did you mean 'run'?"),
+        ("--debug", "loomfmu: COMMAND is missing; see loomfmu --help"),
+        ("run", "loomfmu run: SCENE is missing; write loomfmu run SCENE"),
+        ("run a b", "loomfmu run: 'b' is one argument too many; write loomfmu run SCENE"),
+        ("run a --set", "loomfmu run: --set needs a value; write --set INSTANCE.VARIABLE=VALUE"),
+        ("run a --live --native", "loomfmu run: --native and --live exclude each other; leave out one"),
+        ("run a --live=3", "loomfmu run: --live takes no value, but has '3'; see loomfmu run --help"),
+        ("run a --frobnicate", "loomfmu run: there is no --frobnicate; see loomfmu run --help"),
+        ("build --outpt x", "loomfmu build: there is no --outpt; did you mean --output?"),
         (
-            ["export", "x.toml", "--ssp", "x.ssp", "--flavour", "natve"],
-            "loomfmu export: error: argument --flavour: 'natve' is unknown; did you mean 'native'?",
+            "sweep a --processes x",
+            "loomfmu sweep: --processes = 'x' is not a whole number; write --pro",
+        ),
+        (
+            "limit",
+            "loomfmu limit: SCENE and --vary are missing; write loomfmu limit SCENE --vary INSTANCE.VARI",
+        ),
+        (
+            "export x",
+            "loomfmu export: --fmu or --ssp is missing; write loomfmu export SCENE.toml --fmu FILE.fmu",
+        ),
+        (
+            "export x.toml --ssp x.ssp --flavour natve",
+            "loomfmu export: --flavour = 'natve' is unknown; did you mean 'native'?",
         ),
     ],
 )
-def test_a_misspelt_word_is_answered_with_the_nearest(
-    arguments: list[str], said: str, capsys: pytest.CaptureFixture[str]
+def test_a_mistake_in_a_command_is_one_line_with_the_remedy(
+    words: str, said: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    with pytest.raises(SystemExit):
-        main(arguments)
-    assert capsys.readouterr().err.splitlines()[-1] == said
+    with pytest.raises(SystemExit) as raised:
+        main(words.split())
+    assert raised.value.code == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(said)
 
 
 @pytest.mark.parametrize(
