@@ -228,12 +228,15 @@ def test_a_page_says_which_claims_it_does_not_judge(opened: Open, tmp_path: Path
     force = {"kind": "below", "signal": "heald_1.inertia_force", "bound": "2 kN"}
     claims = [lifts, {"kind": "lowest_margin", "bound": 0.1}, force]
     scene = with_claims("[loom]\nmachine = 'WL680-3600'\nweave = '10/01'\n", claims)
-    page = opened(live_page.write(scene, [], tmp_path / "page.html"))
+    said: list[str] = []
+    page = opened(live_page.write(scene, [], tmp_path / "page.html", warn=said.append))
     until(page, lambda: page.evaluate("Boolean(loomfmu.live.pace)"))
     first, second, third = page.evaluate("loomfmu.live.verdicts")
     assert third["left"] and third["note"].startswith("the page does not compute the rate of heald_1.inertia")
     assert first["left"] and first["note"] == "a page judges signals, not expressions; loomfmu run judges it"
     assert second["holds"] and not second.get("left")
+    reasons = [each["note"].partition(";")[0] for each in (first, third)]
+    assert said[:2] == [f"claim 'below' is not judged in the page: {why}" for why in reasons]
     assert "2 not judged here" in page.inner_text(".outcome")
 
 

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import units
+from ..cosim.claims.claims import place_of
 from ..cosim.importing.fmus import Fmu, build, unbuilt
 from ..cosim.master.steppers import SOURCE
 from ..cosim.reading import checked, drawn
@@ -107,7 +108,12 @@ def write(
         f"{each.key} is not a real number: its limits are not marked" for each in varied if each not in ranges
     )
     doubts = (doubt for knob in varied for doubt in knob.doubts)
-    for warning in dict.fromkeys((*doubts, *(bare if marks else ()), *started.warnings)):
+    left = (
+        f"{place_of(table)} is not judged in the page: {row['not_live']}"
+        for table, row in zip(loaded.claims, judged["claims"], strict=True)
+        if "not_live" in row
+    )
+    for warning in dict.fromkeys((*doubts, *(bare if marks else ()), *left, *started.warnings)):
         warn(warning)
     return write_file(path, content.encode(), PAGE, inputs, overwrite)
 
