@@ -17,6 +17,7 @@ from ..declaring.variables import SHARED, variables_of
 from ..display import notebook
 from ..errors import LoomfmuError, shown
 from ..units import UnitError
+from . import arrays
 from .layout import attributes, channel_of, check_link, column, has, member
 from .opened import TraceFile
 from .signals import Channel, Floats, Signals
@@ -28,6 +29,7 @@ ABOUT = (
     "NX_class",
     "signal",
     "axes",
+    arrays.LISTED,
 )  # attributes of a group that are not values
 NO_JSON = (RecursionError, TypeError, ValueError)  # for a text or its contents
 
@@ -118,6 +120,19 @@ class Trace(Signals):
                 raise LoomfmuError(f"{self.given}: {dataset.name} cannot be read ({error})") from None
             return values.astype(bool) if dataset.attrs.get("dtype") == "bool" else values
 
+    def array(self, name: str) -> NDArray[Any]:
+        """The values of an array such as `plant.y`, along time and then along its own axes.
+
+        Raises LoomfmuError where not all of its elements are recorded.
+        """
+        instance, _, array = name.partition(".")
+        with self._file.opened() as file:
+            group = member(file, instance) if has(file, instance) else {}
+            if array not in (arrays.listed(group) if group else ()):
+                raise self._unknown(name)
+            names, shape = arrays.elements(member(group, array))
+            return np.stack([self[f"{instance}.{each}"] for each in names], axis=-1).reshape(-1, *shape)
+
     def __contains__(self, signal: object) -> bool:
         return signal in self._signals
 
@@ -130,7 +145,13 @@ class Trace(Signals):
         with self._file.opened() as file:
             members = {name: member(file, name) for name in file}
             groups = {name: each for name, each in members.items() if isinstance(each, h5py.Group)}
-            found = [(name, variable) for name, group in groups.items() for variable in group]
+            others = {name: arrays.listed(group) for name, group in groups.items()}
+            found = [
+                (name, variable)
+                for name, group in groups.items()
+                for variable in group
+                if variable not in others[name]
+            ]
             for name, variable in found:
                 check_link(groups[name], variable)
             return {  # an instance has a link to the coordinates of all, or a signal of that name

@@ -25,7 +25,11 @@ NO_SHAFT = "no shaft turns"
 
 @dataclass(frozen=True)
 class Channel:
-    """A recorded signal: all that a trace says of it; in memory also the `column` of its values."""
+    """A recorded signal: all that a trace says of it.
+
+    Until it is written it also has the `column` of its values, and the `array` that it is an element of, with
+    its `place` there, counted from 1.
+    """
 
     instance: str
     variable: str
@@ -39,6 +43,8 @@ class Channel:
     first_flag: int = 0
     boolean: bool = False
     beside: Beside = ALONE
+    array: str = ""
+    place: tuple[int, ...] = ()
 
     @cached_property
     def signal(self) -> str:

@@ -16,6 +16,7 @@ import numpy as np
 
 from ..files import make_folder, put
 from ..version import __version__
+from . import arrays
 from .chunks import INTEGERS, REALS, ROWS, Columns, annotate, chunk_of, dataset
 from .disk import PER_DATASET, SPARE, block_size, edited, reserve
 from .layout import about, about_channel
@@ -193,6 +194,7 @@ class TraceWriter:
         """Write attributes of the closed file, and which signal viewers show first."""
         with edited(self.partial) as file:
             file.attrs.update(attributes)
+            arrays.write(file, self.channels)
             if plotted:
                 instance, _, variable = plotted.partition(".")
                 file.attrs["default"], file[instance].attrs["signal"] = instance, variable

@@ -6,8 +6,10 @@ from contextlib import nullcontext, suppress
 from dataclasses import replace
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
+import xarray
 from foreign_motors import ARRAYS, description2, library, motor2, motor3, packed
 from hypothesis import given
 from hypothesis import strategies as st
@@ -218,6 +220,21 @@ def test_arrays_are_set_wired_and_recorded(tmp_path: Path, isolated: bool) -> No
     np.testing.assert_array_equal(three, [1.0 * u + 2.0 * speed for u in one])
     np.testing.assert_array_equal(trace["one.twice_2"], np.float32(2.0 * speed))
     assert "two.twice_2" not in trace and "one.huge_1" not in trace
+    whole = np.stack(one, axis=-1).reshape(-1, 2, 2)
+    np.testing.assert_array_equal(trace.array("one.y"), whole)
+    with h5py.File(trace.path) as file:
+        np.testing.assert_array_equal(file["one/y"][:], whole)
+        assert file["one/y"].attrs["UNIT"] == file["one/y_1_1"].attrs["UNIT"]
+    with xarray.open_dataset(trace.path, group="one", engine="netcdf4") as read:
+        assert read["y"].dims == ("time", "y_axis_1", "y_axis_2")
+        np.testing.assert_array_equal(read["y"].values, whole)
+    assert "one.y" not in trace and "one.y_axis_1" not in trace and "_arrays" not in trace.parameters
+    with pytest.raises(LoomfmuError, match=r"signal 'one\.table' is not recorded"):
+        trace.array("one.table")
+    with h5py.File(trace.path, "r+") as file:
+        file["one/y"].attrs["elements"] = "y_1_1 y_1_2 y_2_1"
+    with pytest.raises(LoomfmuError, match="the file is damaged"):
+        Trace(trace.path).array("one.y")
 
 
 @pytest.mark.parametrize(

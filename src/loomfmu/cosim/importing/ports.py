@@ -75,6 +75,15 @@ class Port:
         known = self.has_unit and self.kind == "Real"
         return Stated(self.unit, self.definition, self.relative) if known else None
 
+    @property
+    def in_array(self) -> tuple[str, tuple[int, ...]]:
+        """The array that it is an element of, as traces call it, and its place there; none of a scalar."""
+        places = re.findall("[0-9]+", self.own.removeprefix(self.array)) if self.array else []
+        ending = "".join(f"_{each}" for each in places)
+        if not ending or not self.name.endswith(ending):  # a scalar has such a name, and this one got another
+            return "", ()
+        return self.name.removesuffix(ending), tuple(map(int, places))
+
     def doubt(self, given: Any, where: str) -> str:
         """Return a warning about a number without unit, as `units.doubt` words it, or an empty text."""
         if self.kind != "Real" or self.unit not in units.UNITS or self.display in ("1", self.unit):

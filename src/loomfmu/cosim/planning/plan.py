@@ -113,6 +113,7 @@ def _channels(scene: Scene, signals: Sequence[str], master: Master) -> list[Chan
         instance, variable = signal.split(".")
         kind, slot = master.slots[instance, variable]
         meanings = ("no", "yes") if kind == "Boolean" else port.meanings
+        array, place = port.in_array
         found.append(
             Channel(
                 instance=instance,
@@ -127,6 +128,8 @@ def _channels(scene: Scene, signals: Sequence[str], master: Master) -> list[Chan
                 meanings=meanings,
                 first_flag=port.numbers[0] if port.numbers else 0,
                 boolean=kind == "Boolean",
+                array=array,
+                place=place,
             )
         )
     return found
