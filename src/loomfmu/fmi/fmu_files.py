@@ -16,10 +16,11 @@ from ..files import check_target, zip_with
 from ..version import __version__
 from .description import documentation
 from .description.parameter_sets import parameter_files, parameter_note
+from .description.related_files import related_files
 from .description.terminals import terminal_files
 
 FMU = zip_with("an FMU of loomfmu", "modelDescription.xml", ".fmu")
-TEXTS = {name: name for name in ("README.md", "drawing.svg", "icon.png")}  # that lie with a component
+TEXTS = {name: name for name in ("README.md", "drawing.svg", "icon.png", "reference.csv")}  # of a component
 HEADERS = Path(fmpy.__file__).with_name("c-code")  # those of the standard
 EARLIEST = (1980, 1, 1, 0, 0, 0)  # the first date a zip can hold: builds repeat
 NAMESPACE = uuid.uuid5(uuid.NAMESPACE_URL, "https://pypi.org/project/loomfmu")
@@ -64,6 +65,7 @@ def described(component: type[Component], note: str = "") -> dict[str, bytes]:
     return {
         "documentation/index.html": documentation.page(component.__name__, readme + note),
         **files_near(component, {"drawing.svg": "documentation/drawing.svg"}),
+        **related_files(component, files_near(component, {"reference.csv": "result"}).get("result")),
         **description_files(component),
     }
 
