@@ -68,10 +68,14 @@ class Span(Keyed):
         """The range as text."""
         return f"{self.number(self.low)} to {self.show(self.high)}"
 
+    def exact_number(self, value: float) -> str:
+        """A value as `number` gives it, with all digits."""
+        return units.exact(value, self.varied.display)
+
     @property
     def exact(self) -> str:
         """The range as text with all digits of its ends."""
-        low, high = (units.exact(end, self.varied.display) for end in (self.low, self.high))
+        low, high = map(self.exact_number, (self.low, self.high))
         return f"{low} to {high}" + ("" if self.unit == "1" else f" {self.unit}")
 
 

@@ -31,6 +31,11 @@ def test_ranges_are_proven_up_to_the_closed_form_and_fail_beyond(
     assert "not proven: count (belt.buckled depends on the run so far)" in said
 
 
+def test_the_ends_of_a_range_are_proven_to_their_last_digit(loom: Scene) -> None:
+    found = loomfmu.limit(loom, vary="shaft.speed=500.00004rpm..510rpm", points=3, prove=True)
+    assert "proven: safe speed, from 500.00004 to 510 rev/min" in " ".join(found._repr_html_().split())
+
+
 @pytest.mark.parametrize(
     ("vary", "message"),
     [

@@ -251,6 +251,12 @@ def test_an_undecided_run_refutes_nothing(loom: Scene) -> None:
     assert found.status != "refuted"
 
 
+def test_a_dwell_that_an_end_of_the_run_cuts_off_is_not_proven(loom: Scene) -> None:
+    text = loom.text.split("[[claims]]")[0] + claim("dwell", heald="heald_1", at_least="20 deg")
+    (found,) = prove(parse(text, "loom"), set={"shaft.start_angle": "150 deg"}).claims
+    assert "one is cut off by an end of the run" in found.why
+
+
 def test_values_that_are_set_stay_set_while_others_vary(loom: Scene) -> None:
     heavier = {"belt.head_mass": "130 g"}
     over = ["shaft.speed=500rpm..560rpm"]

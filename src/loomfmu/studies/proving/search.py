@@ -180,7 +180,7 @@ class Search:
         """Return why a run does not show what is claimed: not that it is too near its bound."""
         for _values, run in self._runs:
             verdict = run.claims[number]
-            if not (verdict.decided or abs(verdict.worst - verdict.bound) <= verdict.error):
+            if not (verdict.decided or abs(verdict.worst - verdict.bound) <= verdict.error < math.inf):
                 return f"a run leaves it undecided: {verdict.note}"
         return ""
 

@@ -13,7 +13,7 @@ WIDTH, LINE, REST = 8.0, 0.42, 1.4  # [in]
 def show(found: Tolerances) -> None:
     """Print the worst case of every claim."""
     say(f"{found.title}: worst cases within")
-    say(*(f"  {span.key} {span.text} ({span.show(span.value)} in the scene)" for span in found.spans))
+    say(*(f"  {span.key} {span.exact} ({span.show(span.value)} in the scene)" for span in found.spans))
     table = rows(found)
     entries = [
         (f"{word}  {claim}:", f"{own} in the scene,", f"{worst} in the worst case", f"({where}; {costs})")
