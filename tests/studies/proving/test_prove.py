@@ -211,8 +211,9 @@ KINDS = {"r": RISES, "i": IN, "f": FALLS, "o": OUT, "u": UNKNOWN}
         ("orifo", False),  # too short
         ("orfo", False),  # it may be inside for a moment
         ("orofo", True),  # it never gets there
-        ("ifori", True),  # both ends of the run cut one off
-        ("for", True),
+        ("ifori", False),  # both ends of the run cut one off
+        ("iiforii", True),
+        ("for", False),
         ("ifrifo", False),  # a short one may follow the one that is cut off
         ("rifo", False),  # it begins within the run
         ("riifo", True),

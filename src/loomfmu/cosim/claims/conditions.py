@@ -111,9 +111,9 @@ OUT, RISES, FALLS, IN, UNKNOWN = range(5)  # what a form does in a cell of angle
 
 @dataclass(frozen=True)
 class Spans:
-    """Whenever one of these stops being negative, it stays so for an angle [rad], unless the run ends before.
+    """Whenever one of these stops being negative, it stays so for an angle [rad], and one does so at least once.
 
-    And one of them does so at least once.
+    One that an end of the run cuts off is not known to last longer, as in a run.
     """
 
     insides: tuple[Sum, ...]
@@ -159,7 +159,7 @@ class Spans:
 class _Span:
     """Cells of angles that may be a span: its least length [rad], 0 where that is not known.
 
-    It is `excused` from being long where an end of the run cuts it off, or where there is none.
+    It is `excused` from being long where there is none.
     """
 
     cells: slice
@@ -176,9 +176,9 @@ def _spans(kinds: NDArray[np.int_], edges: Floats) -> Iterator[_Span]:
         group = kinds[cells]
         rises, inside, falls = (int(np.sum(group == kind)) for kind in (RISES, IN, FALLS))
         known = np.array_equal(group, [RISES] * rises + [IN] * inside + [FALLS] * falls)
-        cut = (before == -1 and not rises) or (after == len(kinds) and not falls)
         length = float(np.diff(edges)[cells][rises : rises + inside].sum()) * (1.0 - 1e-12)
-        yield _Span(cells, known, cut if inside else not (rises and falls), length * known)
+        cut = (falls and before == -1) or (rises and after == len(kinds))
+        yield _Span(cells, known, not (inside or cut or (rises and falls)), length * known)
 
 
 Condition = Always | Sometime | Spans

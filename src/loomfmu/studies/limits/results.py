@@ -253,8 +253,11 @@ def proofs(found: Limits) -> Iterator[str]:
 
 def _proven(part: ProvenRange, span: Span) -> str:
     """A proven range, rounded inwards unless it ends with what was searched, and where runs fail."""
-    low = span.exact_number(part.low) if part.low == span.low else rounded(part.low / span.factor, up=True)
-    high = span.exact_number(part.high) if part.high == span.high else rounded(part.high / span.factor, up=False)
+    low, high = map(span.exact_number, (part.low, part.high))
+    if part.low != span.low:
+        low = rounded(part.low / span.factor, up=True)
+    if part.high != span.high:
+        high = rounded(part.high / span.factor, up=False)
     beyond = ((part.fails_below, False), (part.fails_above, True))
     fails = [rounded(value / span.factor, up) for value, up in beyond if math.isfinite(value)]
     unit = "" if span.unit == "1" else f" {span.unit}"
