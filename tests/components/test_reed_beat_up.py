@@ -251,7 +251,7 @@ TAKEN = 0.2 * (
 
 @pytest.mark.parametrize("more", [{}, {"servo": True}, {"reed_mass": 0.0, "crank_direction": -1}], ids=str)
 def test_in_a_revolution_the_crank_gives_what_the_picks_resistance_takes(more):
-    count = 72000
+    count = 36000
     # the reed is in touch for some 20 deg of the crank; the rectangle rule's error is that of its two corners
     reed, work, given = placed(0.0, CLOTH | more), 0.0, 0.0
     for k in range(count):

@@ -80,8 +80,8 @@ def test_quantities_are_those_of_the_units(name: str) -> None:
         shown = variable.type is float and variable.causality != "local"
         wanted = units.QUANTITIES.get(variable.unit) if shown else None
         assert kind.attrib.get("quantity") == wanted
-        # a number, or a rate of one, can be anything, and Modelica's library has no name for a rate of power
-        assert not shown or (wanted is None) == (variable.unit in ("1", "1/s", "1/s2", "W/s"))
+        # a number, or a rate of one, can be anything; Modelica's library names no rate of power or force
+        assert not shown or (wanted is None) == (variable.unit in ("1", "1/s", "1/s2", "W/s", "N/s"))
 
 
 @every_fmu
