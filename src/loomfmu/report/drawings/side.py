@@ -159,7 +159,7 @@ def _section(tracks: Tracks, shed: Shed) -> Figure:
     _parts(sketch, shed)
     first = shed.frames[0]
     sketch.label(0.5 * (last - shed.front), sketch.top, "heald frames", shift=(0.0, 18.0))
-    sketch.label(sketch.left, 0.0, "to the back rest", "start", (4.0, -6.0))
+    sketch.label(sketch.left, 0.0, "← back rest", "start", (4.0, -6.0))
     sketch.label(sketch.right, 0.0, "cloth", "end", (-4.0, -8.0))
     sketch.label(0.0, 0.0, "fell", "start", (5.0, 20.0))
     middle = tracks.add("warp.named", ["*", 0.8, f"{first.name}.eye"])
