@@ -140,4 +140,4 @@ def test_it_is_built_for_all_platforms(tools, tmp_path):
     path = native_fmu.build_native("MainShaft", tmp_path, fmi=3)
     with zipfile.ZipFile(path) as zipped:
         places = {name.split("/")[1] for name in zipped.namelist() if name.startswith("binaries/")}
-    assert places == {"x86_64-linux", "x86_64-windows", "x86_64-darwin", "aarch64-darwin"}
+    assert places == {"x86_64-linux", "aarch64-linux", "x86_64-windows", "x86_64-darwin", "aarch64-darwin"}

@@ -93,7 +93,9 @@ PROVE = argument(
     default=[],
 )
 PLATFORM = argument(
-    "--platform", "NAME[,NAME]", "platforms of native FMUs: linux64,win64,darwin64; all by default"
+    "--platform",
+    "NAME[,NAME]",
+    "platforms of native FMUs: linux64,aarch64-linux,win64,darwin64; all by default",
 )
 
 

@@ -190,8 +190,10 @@ class Fmu:
     @property
     def library(self) -> Path:
         """The library for this machine, if there is one."""
-        here = fmpy.platform if self.fmi == 2 else fmpy.platform_tuple
-        return self.directory / f"binaries/{here}/{self.identifier}{fmpy.sharedLibraryExtension}"
+        names = [fmpy.platform_tuple, *([fmpy.platform] if self.fmi == 2 else [])]
+        file = f"{self.identifier}{fmpy.sharedLibraryExtension}"
+        found = [self.directory.absolute() / f"binaries/{name}/{file}" for name in names]
+        return next((each for each in found if each.exists()), found[-1])
 
     def check_platform(self, where: str) -> None:
         """Refuse a file that has no library for this machine, naming the platforms that it has."""

@@ -133,6 +133,7 @@ class IsolatedSlave(Slave):
             "directory",
             "guid",
             "identifier",
+            "library",
         )
         facts = {name: getattr(fmu, name) for name in known}
         self.forget_messages()

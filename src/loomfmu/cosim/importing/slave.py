@@ -145,6 +145,7 @@ class Slave(Logged):
             unzipDirectory=str(self.fmu.directory),
             modelIdentifier=self.fmu.identifier,
             instanceName=self.name,
+            libraryPath=str(self.fmu.library),  # fmpy takes linux64 on every processor
         )
 
     def _instantiated(

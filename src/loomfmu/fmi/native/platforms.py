@@ -25,12 +25,11 @@ class Platform:
     options: tuple[str, ...]
 
 
+LINUX = ("-fPIC", "-Wl,--build-id=none", "-Wl,-rpath,$ORIGIN", "-lm")
+# FMI 2 has no name for the second: it is that of FMI 3
 PLATFORMS = {
-    "linux64": Platform(
-        ".so",
-        {"x86_64-linux-gnu.2.17": "x86_64-linux"},
-        ("-fPIC", "-Wl,--build-id=none", "-Wl,-rpath,$ORIGIN", "-lm"),
-    ),
+    "linux64": Platform(".so", {"x86_64-linux-gnu.2.17": "x86_64-linux"}, LINUX),
+    "aarch64-linux": Platform(".so", {"aarch64-linux-gnu.2.17": "aarch64-linux"}, LINUX),
     "win64": Platform(".dll", {"x86_64-windows-gnu": "x86_64-windows"}, ()),
     "darwin64": Platform(
         ".dylib",
@@ -40,15 +39,18 @@ PLATFORMS = {
 }
 # this machine, where it is none of them: libraries are built for it, but no FMUs
 HERE = Platform(".so", {"native": ""}, ("-fPIC", "-lm"))
-SYSTEMS = {"linux": ("linux64", ("x86_64",)), "win32": ("win64", ("AMD64",)), "darwin": ("darwin64", ())}
+SYSTEMS = {
+    "linux": {"x86_64": "linux64", "aarch64": "aarch64-linux"},
+    "win32": {"AMD64": "win64"},
+    "darwin": {"x86_64": "darwin64", "arm64": "darwin64"},
+}
 MACHINE = f"{sys.platform} on {platform.machine()}"
 
 
 def host() -> str:
     """The platform that this process runs on; empty if no native FMUs are built for it."""
-    name, machines = SYSTEMS.get(sys.platform, ("", ()))
-    fits = sys.maxsize > 2**32 and (not machines or platform.machine() in machines)
-    return name if fits else ""
+    known = SYSTEMS.get(sys.platform, {}) if sys.maxsize > 2**32 else {}
+    return known.get(platform.machine(), "")
 
 
 def check_platforms(platforms: tuple[str, ...]) -> tuple[str, ...]:
