@@ -166,6 +166,15 @@ def omsimulator(scene: Scene, package: Path) -> Signals:
     return {signal: np.array(values) for signal, values in rows.items()}
 
 
+def exported_again(package: Path, directory: Path) -> Path:
+    """A package that OMSimulator has read and written."""
+    library, model, path = oms_library(), ctypes.c_char_p(), directory / "again.ssp"
+    assert library.oms_setTempDirectory(str(directory).encode()) == 0
+    assert library.oms_importFile(str(package).encode(), ctypes.byref(model)) == 0
+    assert library.oms_export(model, str(path).encode()) == library.oms_delete(model) == 0
+    return path
+
+
 MASTERS: dict[str, Master] = {"libcosim": libcosim, "ecos": ecos, "fmpy": fmpy, "OMSimulator": omsimulator}
 
 

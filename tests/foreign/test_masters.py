@@ -4,11 +4,24 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from masters import MASTERS, demo, libcosimpy, ours, packed
+from masters import MASTERS, demo, exported_again, libcosimpy, ours, packed
 
 from loomfmu.cosim.importing.fmus import Fmu
+from loomfmu.cosim.run import run
+from loomfmu.cosim.scenes import scene as scenes
+from loomfmu.cosim.ssp import read as packages
 
 ALONE = {"speed": "600 rpm", "follow_shaft": "false"}
+CHAIN = """
+duration = "0.1 s"
+step = "0.1 ms"
+[shaft]
+speed = "600 rpm"
+[weft]
+[dobby]
+[heald_1]
+pattern = "10"
+"""
 # power of the step with which the delay of one step on each wire shows: inputs are carried over the step with
 # the rates that are known, so what has two known rates is off by the third power, and so on down
 ORDERS = {
@@ -51,6 +64,17 @@ def test_a_wired_loom_converges_to_ours_with_the_step(tmp_path: Path, master: st
             errors.append(float(np.max(difference)))
     for signal, (coarse, fine) in away.items():
         assert coarse / fine == pytest.approx(2.0 ** ORDERS[signal], rel=0.2), (signal, coarse, fine)
+
+
+@pytest.mark.usefixtures("natives")
+def test_a_package_that_omsimulator_writes_back_gives_the_same_run(tmp_path: Path) -> None:
+    scene = scenes.parse(CHAIN, "chain")
+    again = packages.load(exported_again(packed(scene, tmp_path), tmp_path))
+    assert again.step == scene.step == 1e-4
+    expected, found = ours(scene, tmp_path), run(again, output=tmp_path / "again.h5").trace
+    assert len(expected) > 20
+    for signal, values in expected.items():
+        np.testing.assert_array_equal(found[signal], values, err_msg=signal)
 
 
 def test_libcosim_loads_every_native_fmu(natives: dict[str, Fmu]) -> None:

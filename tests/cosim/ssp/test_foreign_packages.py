@@ -13,6 +13,7 @@ from loomfmu.cosim.importing import fmus
 from loomfmu.cosim.run import Result, run
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.ssp import export as ssp
+from loomfmu.cosim.ssp import read
 from loomfmu.cosim.ssp.package import Package
 from loomfmu.cosim.ssp.xml import NAMESPACES
 
@@ -66,6 +67,12 @@ STRUCTURE = """<?xml version="1.0"?>
 ALGORITHM = (
     '<ssd:Annotations><ssc:Annotation type="com.opensimulationplatform"><osp:Algorithm>'
     '<osp:FixedStepAlgorithm baseStepSize="1e-3"/></osp:Algorithm></ssc:Annotation></ssd:Annotations>'
+)
+# OMSimulator says the step below the system
+STEP_OF_OMS = (
+    '</ssd:Connections><ssd:Annotations><ssc:Annotation type="org.openmodelica"><oms:Annotations'
+    f' xmlns:oms="{NAMESPACES["oms"]}"><oms:SimulationInformation><oms:FixedStepMaster stepSize="0.002000"/>'
+    "</oms:SimulationInformation></oms:Annotations></ssc:Annotation></ssd:Annotations><ssd:Connections>"
 )
 
 
@@ -165,6 +172,13 @@ def test_a_scene_with_another_makers_fmu_goes_there_and_back(tmp_path: Path, uni
     for signal in before:
         np.testing.assert_array_equal(before[signal], after[signal])
         assert before.unit(signal) == after.unit(signal)
+
+
+def test_the_step_of_omsimulator_counts_where_no_other_is_said(tmp_path: Path) -> None:
+    assert read.load(package(tmp_path, algorithm="", connection=STEP_OF_OMS)).step == 2e-3
+    assert read.load(package(tmp_path, connection=STEP_OF_OMS)).step == 1e-3
+    with pytest.raises(LoomfmuError, match="stepSize"):
+        read.load(package(tmp_path, algorithm="", connection=STEP_OF_OMS.replace('stepSize="0.002000"', "")))
 
 
 def test_duration_step_and_values_can_be_set(tmp_path: Path) -> None:

@@ -29,10 +29,16 @@ from .connections import Nets
 from .package import Package
 from .structure import Node, connectors, joining, stated_by, structure, systems
 from .values import Given, apply, bound
-from .xml import FMU, OSP, OURS, SSD_FILE, full, read_units, real, required, transformed
+from .xml import FMU, OMS, OSP, OURS, SSD_FILE, full, read_units, real, required, transformed
 
 # keys of a scene that no structure can hold
 KEPT = ("title", "description", "coupling", "record", "inputs", "claims", "tolerances")
+
+# where a package may state its step: element, kind and content of its annotation, way from there, attribute
+STEPS = (
+    ("ssd:DefaultExperiment", OSP, "osp:Algorithm", ("osp:FixedStepAlgorithm",), "baseStepSize"),
+    ("ssd:System", OMS, "oms:Annotations", ("oms:SimulationInformation", "oms:FixedStepMaster"), "stepSize"),
+)
 
 
 def load(path: str | Path, overrides: dict[str, Any] | None = None) -> Scene:
@@ -204,15 +210,15 @@ class _Reader:
         """Return a third-party package's settings, as the text of a scene without its instances."""
         experiment = self.root.find(full("ssd:DefaultExperiment"))
         tables: dict[str, Any] = {"title": self.root.get("name") or self.package.path.stem}
-        if experiment is None:
-            return tables
-        algorithm = _annotation(experiment, OSP, "osp:Algorithm")
-        fixed = algorithm.find(full("osp:FixedStepAlgorithm")) if algorithm is not None else None
-        if experiment.get("stopTime") is not None:
+        if experiment is not None and experiment.get("stopTime") is not None:
             tables["duration"] = real(experiment, "stopTime", 0.0) - self.start_time
-        if fixed is not None:
-            required(fixed, "baseStepSize")
-            tables["step"] = real(fixed, "baseStepSize", 0.0)
+        for place, kind, content, master, attribute in STEPS:
+            parent = self.root.find(full(place))
+            annotation = None if parent is None else _annotation(parent, kind, content)
+            fixed = None if annotation is None else annotation.find("/".join(map(full, master)))
+            if fixed is not None:
+                required(fixed, attribute)
+                return tables | {"step": real(fixed, attribute, 0.0)}
         return tables
 
 
