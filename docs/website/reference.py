@@ -16,7 +16,7 @@ from loomfmu.cosim.claims.arguments import Argument, argument_of
 from loomfmu.cosim.claims.claim import AT_LEAST
 from loomfmu.cosim.claims.claims import kinds
 from loomfmu.cosim.scenes.scene import Scene
-from loomfmu.cosim.scenes.settings import COUPLINGS, GRIDS, KEYS
+from loomfmu.cosim.scenes.settings import COUPLINGS, KEYS
 from loomfmu.declaring.variables import variables_of
 from loomfmu.fmi.description.documentation import limits_text, start_text
 from loomfmu.loom.standard_loom import LOOM_KEYS
@@ -34,7 +34,7 @@ DESIGN = (
     "loads",
     "reed",
 )
-CHOICES = {"coupling": COUPLINGS, "grid": GRIDS}
+CHOICES = {"coupling": COUPLINGS}
 
 
 def pages() -> dict[str, str]:

@@ -13,7 +13,7 @@ from loomfmu import LoomfmuError, evaluate, judge, run, sweep
 
 SIMS = Path(__file__).parents[2] / "sims"
 DEMO: Any = SIMS / "wl680_3600.toml"
-SHORT = {"revolutions": 2, "steps_per_revolution": 90, "grid": "uniform"}
+SHORT = {"revolutions": 2, "steps_per_revolution": 90}
 
 
 def short() -> loomfmu.Evaluation:

@@ -39,9 +39,8 @@ pytestmark = [
 
 
 def loaded(path: Path, **overrides: Any) -> Scene:
-    """A scene on its own steps."""
-    changed = {key.replace("__", "."): value for key, value in overrides.items()}
-    return scenes.load(path, {"grid": "uniform"} | changed)
+    """A scene with other values."""
+    return scenes.load(path, {key.replace("__", "."): value for key, value in overrides.items()})
 
 
 def ran(scene: Scene, directory: Path) -> Result:

@@ -13,9 +13,9 @@ TEXT = "revolutions = 2\nsteps_per_revolution = 720\n" + loom(
 )
 
 
-def scene(*claims: tuple[str, str, str, str], grid: str = "uniform") -> Scene:
+def scene(*claims: tuple[str, str, str, str]) -> Scene:
     tables = (claim(kind, name=name, signal=signal, bound=bound) for name, kind, signal, bound in claims)
-    return parse(f'grid = "{grid}"\n{TEXT}{"".join(tables)}', "loom")
+    return parse(TEXT + "".join(tables), "loom")
 
 
 def test_sums_and_their_cases_are_proven_and_nothing_else_is() -> None:

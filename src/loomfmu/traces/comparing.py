@@ -21,7 +21,7 @@ from .reader import Trace
 from .verdict import Verdict
 
 TOLERANCE = 1e-9  # far above what compilers and C libraries round differently, far below what a loom feels
-PROVENANCE = ("software", "flavour", "grid", "steps_per_revolution", "step")
+PROVENANCE = ("software", "flavour", "steps_per_revolution", "step")
 
 
 @dataclass(frozen=True)
