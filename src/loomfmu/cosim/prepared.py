@@ -173,7 +173,8 @@ class Pattern:
             self.tangents.along(scene, grid, seeds_of(scene, other, change), run.recording)
             for other, change in moved
         ]
-        return Derived(self._judged(run.recording), run.early, directions, self._judged, run.recording)
+        verdicts = self._verdicts(scene, run.recording)
+        return Derived(verdicts, run.early, directions, self._judged, run.recording)
 
     def _with_steps(self, scene: Scene, errors: Errors = "all") -> tuple[Scene, Coarser | None, str]:
         """The scene with steps that reach its accuracy, what coarser ones gave, and a line that says so.
