@@ -316,7 +316,7 @@ def test_only_what_its_outputs_need_is_in_it(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_the_same_scene_gives_the_same_bytes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(compiler, "_call", sharing.CALL)
+    monkeypatch.setattr(compiler, "compiled_in", sharing.COMPILED_IN)
     scene = loaded(SIMS / "belt_alone.toml")
     first = exported(scene, tmp_path).read_bytes()
     assert exported(scene, tmp_path).read_bytes() == first
