@@ -111,7 +111,7 @@ OUT, RISES, FALLS, IN, UNKNOWN = range(5)  # what a form does in a cell of angle
 
 @dataclass(frozen=True)
 class Spans:
-    """Whenever one of these stops being negative, it stays so for an angle [rad], and one does so at least once.
+    """Whenever one of these stops being negative, it stays so for an angle [rad]; one does so at least once.
 
     One that an end of the run cuts off is not known to last longer, as in a run.
     """

@@ -287,6 +287,9 @@ static double reached(const struct run *run, int latch, int signal, enum followe
         step++;
     if (step == 0 || isnan(held))
         return time_at(run, 0);
+    while (step < held_at && as_followed(sample_of(run, signal, step + 1), followed)
+                                 < as_followed(sample_of(run, signal, step), followed))
+        step++; /* fine steps come close to the extreme before they reach it */
     double there = as_followed(sample_of(run, signal, step), followed);
     ptrdiff_t least = there <= as_followed(sample_of(run, signal, step - 1), followed) ? step : step - 1;
     if (!(0 < least && least < last))
