@@ -227,6 +227,7 @@ def test_every_mechanism_with_a_torque_has_the_next_free_place():
         "shaft.passed_torque_2": "heald_1.passed_torque",
         "shaft.torque_3": "reed.shaft_torque",
         "shaft.work_3": "reed.shaft_work",
+        "shaft.passed_torque_3": "reed.passed_torque",
     }
     assert gathered("reed", MECHANISMS, {}) == {}
 
