@@ -10,6 +10,7 @@ import figure_style
 import guard
 import limits
 import live_pages
+import many_rows
 import precision
 import proving
 import pruning
@@ -35,6 +36,7 @@ BENCHMARKS: dict[str, tuple[str, ModuleType]] = {
     belt_motion.NAME: ("The belt in motion", belt_motion),
     pruning.NAME: ("Running only what is requested", pruning),
     sweep_runs.NAME: ("Sweeps", sweep_runs),
+    many_rows.NAME: ("Many rows at once", many_rows),
     start_up.NAME: ("Start-up", start_up),
     live_pages.NAME: ("The page in which the loom runs", live_pages),
     writing.NAME: ("Writing traces", writing),

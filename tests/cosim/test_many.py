@@ -17,7 +17,16 @@ from loomfmu.units import Si
 
 SIMS = Path(__file__).parents[2] / "sims"
 # whose rows are run in C, all but those that are near a bound
-IN_C = ("belt_motion", "both_rapiers", "damper", "satin", "start_up", "twill", "weft_tension", "wl680_3600")
+IN_C = (
+    "belt_alone",
+    "both_rapiers",
+    "damper",
+    "satin",
+    "spline_cam",
+    "start_up",
+    "weft_tension",
+    "wl680_3600",
+)
 RANGES = {
     "shaft.speed": (58.0, 71.0),
     "belt.guide_clearance": (2e-4, 1.3e-3),  # beyond 1 mm it warns
@@ -96,6 +105,14 @@ def test_refused_rows_say_what_a_single_run_says() -> None:
         many = checked(found, values, errors="none")
         assert sorted(many.errors) == [0, 3]
         assert list(many.single) == [5]
+
+
+def test_an_fmu_refuses_single_rows() -> None:
+    """The first one included: its four-bar does not close."""
+    with prepare(belt()) as found:
+        many = checked(found, {"weft.coupler_length": np.linspace(0.5, 0.24, 8)}, errors="none")
+        assert 0 in many.errors
+        assert len(many.single) == 0 < len(many.errors) < 8
 
 
 def test_a_claim_refuses_single_rows() -> None:

@@ -14,6 +14,7 @@ from sweep_files import NO_TRACES, started, sweep_file, written
 
 import loomfmu
 from loomfmu.cosim.master.master import Interrupted
+from loomfmu.cosim.master.rows import RowRunner
 
 SPEEDS, MANY_SPEEDS = 41, 401
 
@@ -125,19 +126,18 @@ def test_ctrl_c_in_a_row_is_no_result_of_that_row(
     path = sweep_file(text)
     whole = loomfmu.sweep(path, processes=1, output="whole").table
     calls = iter(range(50))
+    part = RowRunner._part
 
-    evaluate = loomfmu.Prepared.evaluate
-
-    def interrupted(*arguments: Any, **keywords: Any) -> Any:
-        if next(calls) == 30:
+    def interrupted(*arguments: Any) -> Any:
+        if next(calls) == 2:
             raise how
-        return evaluate(*arguments, **keywords)
+        return part(*arguments)
 
     with monkeypatch.context() as patched:
-        patched.setattr("loomfmu.cosim.prepared.Prepared.evaluate", interrupted)
+        patched.setattr("loomfmu.cosim.master.rows.RowRunner._part", interrupted)
         with pytest.raises(KeyboardInterrupt, match=r"finished rows are kept in .*out; run the same"):
             loomfmu.sweep(path, processes=1, output="out")
     assert batches(Path("out")) and not Path("out/lock").exists()
     found = loomfmu.sweep(path, processes=1, output="out")
-    assert 20 <= found.ran < 50
+    assert 0 < found.ran < 50
     assert found.table.equals(whole, check_metadata=True)

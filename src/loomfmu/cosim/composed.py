@@ -5,8 +5,9 @@ at any time, and these a cubic from one time to the next, with what it may be of
 value may lie, the step is divided until that is rounding. What is left is the error of the verdict.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
-from functools import cached_property
+import ctypes
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from functools import cache, cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,14 +17,17 @@ from ..components import COMPONENTS
 from ..declaring.upstream import sources_of, upstream
 from ..declaring.variables import MOTION, NOTHING
 from ..errors import LoomfmuError
-from ..traces import Signals, Verdict
+from ..fmi.native.libraries import needed_library
+from ..traces import Recording, Signals, Verdict
 from ..traces.extended import RATE, Resampled
 from .claims.arguments import TURN, Window
 from .claims.claim import Claim
 from .claims.conditions import remembers
 from .claims.judging import run_of
+from .composition import Composition, Rule
 from .estimates import MOST_VALUES, undecided
 from .master.grid import grid_of_points, period
+from .master.steppers import SOURCE
 from .planning.requested import SHAFT_ANGLE, Movements, Requested, output_port
 from .scenes.graph import step_order
 from .scenes.scene import Scene
@@ -78,6 +82,28 @@ class Composed:
         return {
             n for n, each in self.claims.items() if self.unrated.intersection(each.signals(self._requested))
         }
+
+    @property
+    def needed(self) -> Collection[str]:
+        """The instances on which these claims depend."""
+        return self._needed
+
+    @property
+    def plain(self) -> bool:
+        """Return whether all are on signals themselves over the whole run, as C judges them in rows."""
+        alike = all(
+            type(each).motions is Claim.motions and _window(each) is None for each in self.claims.values()
+        )
+        return alike and not (self._tangents and self._tangents.driven)
+
+    def composition(self, scene: Scene, run: Recording, room: int) -> Composition:
+        """Return what C takes to judge them on rows with so many samples, as `judged` does."""
+        assert self._tangents is not None
+        windows = {base: self._windows(base) for base, _sign in self._latches.values()}
+        rule = Rule(PARTS, ROUNDS, DOUBT, NARROW, EXACT, ROUNDED, SHARE)
+        return Composition(
+            self.claims, self._tangents, self._signals, self._latches, windows, rule, scene, run, room
+        )
 
     # ---- what follows from the time
 
@@ -183,8 +209,13 @@ class Composed:
         """Return times that show how all mechanisms move; too many for the memory where that is so."""
         movements, end = Movements(self._requested), float(run.time[-1])
         steps = [movements.longest_step(scene, name)[0] for name in self._needed]
-        count = end / min([period(scene) / SHOWN, *(each for each in steps if each)])
-        return np.linspace(0.0, end, int(np.ceil(np.clip(count, FEWEST, MOST_VALUES))) + 1)
+        return np.linspace(0.0, end, int(self.steps(end, period(scene), steps)) + 1)
+
+    def steps(self, end: Any, of_period: Any, longest: Sequence[float]) -> Any:
+        """Return the number of equal steps to an end, or to several, that show how mechanisms move."""
+        shortest = np.minimum(of_period / SHOWN, min((each for each in longest if each), default=np.inf))
+        with np.errstate(over="ignore"):
+            return np.ceil(np.clip(end / shortest, FEWEST, MOST_VALUES))
 
     def _worst_samples(self, run: Signals) -> Floats:
         """Return the times of the run's own worst samples: no verdict is better than what it shows."""
@@ -295,10 +326,15 @@ def _parts(times: Floats, cells: Flags) -> Floats:
 
 def _lowest(time: Floats, values: Floats, rates: Floats) -> Floats:
     """Return what a motion does not go below on each step: its cubic, less what that may be off by."""
-    h, bends = np.diff(time), np.gradient(rates, time, edge_order=2)
-    rise, v0, v1 = np.diff(values), rates[:-1] * h, rates[1:] * h
-    before = np.abs(bends[:-1] * h * h - (6.0 * rise - 4.0 * v0 - 2.0 * v1))
-    after = np.abs(bends[1:] * h * h - (2.0 * v0 + 4.0 * v1 - 6.0 * rise))
-    points = values[:-1], values[:-1] + v0 / 3.0, values[1:] - v1 / 3.0, values[1:]
-    found: Floats = np.minimum.reduce(points) - DOUBT * np.maximum(before, after)
+    found = np.empty(len(time) - 1)
+    time, values, rates = (np.ascontiguousarray(each, dtype=float) for each in (time, values, rates))
+    places = [ctypes.c_void_p(each.ctypes.data) for each in (time, values, rates, found)]
+    doubt, sign = ctypes.c_double(DOUBT), ctypes.c_double(1.0)
+    count, stride = ctypes.c_int64(len(time)), ctypes.c_int64(1)
+    _library().find_lowest(count, doubt, sign, *places[:3], stride, places[3])
     return found
+
+
+@cache
+def _library() -> Any:
+    return ctypes.PyDLL(str(needed_library(SOURCE)))

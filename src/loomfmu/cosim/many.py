@@ -1,6 +1,7 @@
 """Many runs of a prepared scene at once: in C as far as they go there, the others one by one."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -11,13 +12,14 @@ from ..traces import Verdict
 from ..traces.verdict import FAILS, HOLDS, UNDECIDED
 from ..units import Si
 from .claims.claim import Claim
-from .claims.judging import verdict_of
+from .claims.judging import FIELDS, verdict_of
 from .master.master import Interrupted
 from .results import Evaluation
 from .rows import Ran, RowsInC
 from .scenes.scene import Scene
 
 WORDS = (HOLDS, FAILS, UNDECIDED)  # by the code of each
+SPREAD = FIELDS.index("spread")
 NONE = -1  # the code of a verdict that there is not
 FEW = 4  # rows that are run one by one sooner
 FIRST = 16  # rows that show whether it is worth to run others in C
@@ -42,7 +44,7 @@ class Rows:
         places: NDArray[np.int64],
         single: Mapping[int, Evaluation],
         errors: Mapping[int, Exception],
-        signals: Sequence[str],
+        signals: Mapping[str, Any],
     ):
         self.scene, self.single, self.errors = scene, single, errors
         self._claims, self._parts, self._places = claims, parts, places
@@ -52,7 +54,7 @@ class Rows:
             np.full(shape, np.nan),
             np.full(shape, NONE),
         )
-        self.values = {signal: np.zeros(len(places)) for signal in signals}
+        self.values = {signal: np.zeros(len(places), dtype=kind) for signal, kind in signals.items()}
         for number, ran in enumerate(parts):
             rows = np.flatnonzero(places[:, 0] == number)
             self._fill(rows, ran, places[rows, 1])
@@ -96,15 +98,13 @@ class Rows:
     def _verdicts(self, row: int, numbers: Iterable[int]) -> tuple[Verdict, ...]:
         part, place = self._places[row].tolist()
         ran = self._parts[part]
-        return tuple(
-            verdict_of(
-                ran.judged.verdicts[place, number].tolist(),
-                ran.forms[number],
-                ran.names[number],
-                ran.judged.notes.get((place, number), ""),
-            )
-            for number in numbers
-        )
+        found = []
+        for number in numbers:
+            values = ran.judged.verdicts[place, number].tolist()
+            note = ran.judged.notes.get((place, number), "")
+            verdict = verdict_of(values, ran.forms[number], ran.names[number], note)
+            found.append(replace(verdict, spread=values[SPREAD]) if ran.exact[place, number] else verdict)
+        return tuple(found)
 
     def near(self, row: int) -> frozenset[int]:
         """The claims, counted from 0, that are so near their bounds that a numerical error may matter."""
@@ -163,40 +163,31 @@ class Many:
         near: bool,
     ) -> None:
         """Run in C, if that is worth it, rows that differ in the values of some keys alone."""
-        rows, scene = self._fit(lot, varied, ready)
-        if rows is None or scene is None:
-            return
         columns = {key: np.array([self._values[key][each] for each in lot], dtype=float) for key in varied}
-        ran = rows.run(columns, scene, signals)
-        if ran is None:
-            return
-        final = ran.clean & ~(near & ran.near.any(axis=1))
-        rows.count(final)
-        self._places[np.array(lot)[final], 0] = len(self._parts)
-        self._places[np.array(lot)[final], 1] = np.flatnonzero(final)
-        self._parts.append(ran)
-
-    def _fit(
-        self, lot: Sequence[int], varied: Sequence[str], ready: MakesReady
-    ) -> tuple[RowsInC | None, Scene | None]:
-        """Return what runs rows in C, and the scene of one of them; none where they are to be run one by one."""
-        for row in lot:
-            try:
+        for row in lot[:FIRST]:
+            try:  # values of one of the rows, which must be possible and start the FMUs
                 rows, scene = ready(self.settings(row))
+                if not (varied and rows.worth and not rows.unfit and all(map(rows.takes, varied))):
+                    return
+                ran = rows.run(columns, scene, signals, near)
             except LoomfmuError:
                 continue
-            fit = varied and rows.worth and not rows.unfit and all(map(rows.takes, varied))
-            return (rows, scene) if fit else (None, None)
-        return None, None
+            if ran is not None:
+                final = ran.clean & ~(near & ran.near & ~ran.exact).any(axis=1)
+                rows.count(final)
+                self._places[np.array(lot)[final], 0] = len(self._parts)
+                self._places[np.array(lot)[final], 1] = np.flatnonzero(final)
+                self._parts.append(ran)
+            return
 
     def judged(
         self,
         scene: Scene,
         claims: Sequence[Claim],
-        signals: Sequence[str],
+        signals: Mapping[str, Any],
         evaluate: Callable[[dict[str, Any]], Evaluation],
     ) -> Rows:
-        """Run all others one by one, and return all."""
+        """Run all others one by one, and return all; `signals` have the types of their values."""
         single, errors = dict[int, Evaluation](), dict[int, Exception]()
         for row in np.flatnonzero(self._places[:, 0] == NONE).tolist():
             try:

@@ -27,7 +27,7 @@ from .many import Many, Rows
 from .master.grid import Grid, uniform
 from .master.master import Interrupted, Master
 from .planning.plan import InMemory, Plan, Stepping, build_needed, early_end, explained, record
-from .planning.requested import Requested
+from .planning.requested import Requested, output_port
 from .provenance import attributes
 from .reading import check_bounds, check_set, requested
 from .recorded import finish, kept_readable, own_path, progress_of, target_of, writer_of, written_at
@@ -39,6 +39,7 @@ from .scenes.values import Values
 from .tangents import Direction, Tangents, seeds_of
 
 Errors = Literal["all", "near", "none"]  # which verdicts get an estimate of their numerical error
+KINDS = {"Real": float, "Integer": int, "Boolean": bool}
 MOST_PATTERNS = 8  # that are kept ready, such as one for each machine
 
 
@@ -83,7 +84,7 @@ class Pattern:
     @cached_property
     def rows(self) -> RowsInC:
         """The same for many values at once."""
-        stepping = self.stepping(self.judged)
+        stepping = partial(self.stepping, self.judged)
         return RowsInC(self._requested, self._all, self._estimates, self._composed, stepping, self.values)
 
     def stepping(self, signals: Sequence[str]) -> Stepping:
@@ -150,7 +151,7 @@ class Pattern:
             scene,
             verdicts[: len(self.claims)],
             (*scene.notes, *found.warnings),
-            explained(found.plan),
+            (*explained(found.plan), *self.rows.explained),
             found.steps,
             found.recording,
             verdicts[self._measured],
@@ -240,7 +241,7 @@ class Pattern:
             scene,
             verdicts,
             warnings,
-            explained(plan),
+            (*explained(plan), *self.rows.explained),
             steps,
             path,
             trace,
@@ -320,7 +321,7 @@ class Prepared:
         """
         _check_errors(errors)
         many, measured = Many(values), len(self._measures)
-        signals = self._values
+        kinds = {signal: KINDS[output_port(self.scene, signal, "values").kind] for signal in self._values}
 
         def ready(settings: dict[str, Any]) -> tuple[RowsInC, Scene]:
             pattern, scene = self._ready(settings)
@@ -328,9 +329,9 @@ class Prepared:
 
         with self._turn:
             if errors != "all" and not measured:
-                many.run_in_c(ready, self._base.rows.takes, signals, errors == "near")
+                many.run_in_c(ready, self._base.rows.takes, self._values, errors == "near")
         return many.judged(
-            self.scene, self._base.claims, signals, lambda settings: self.evaluate(settings, errors=errors)
+            self.scene, self._base.claims, kinds, lambda settings: self.evaluate(settings, errors=errors)
         )
 
     @property

@@ -7,7 +7,8 @@ other: so every row has the verdicts that it has alone.
 
 import ctypes
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -19,15 +20,15 @@ from ..errors import LoomfmuError
 from ..fmi.native.libraries import library_of
 from ..traces import Recording
 from .claims.claim import Claim
-from .claims.judging import Form, run_of
+from .claims.judging import FIELDS, Form, run_of
 from .claims.movers import whole_turn
 from .composed import Composed
 from .dependence import TOO_LONG
 from .estimates import Estimates, coarseness, usual
 from .importing.slave import Slave
 from .master.grid import contradicted, passed_by, uniform
-from .master.master import Interrupted, Master
-from .master.rows import Judged, Judging, RowRunner, Variable, Varied
+from .master.master import Interrupted
+from .master.rows import Judged, Judging, RowRunner, Setting, Variable, Varied
 from .master.steppers import SOURCE
 from .planning.plan import Stepping
 from .planning.pruning import Pruned
@@ -42,6 +43,8 @@ Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 ROUNDING = 1e-9  # far above that of speeds and steps: rows within it are run as any other
 SPEED = ("shaft", "speed")
+DECIDED = FIELDS.index("decided")
+ROOM = 4096  # samples more than four times those that composed claims begin with
 ENOUGH, LEAST = 16, 0.3  # rows, and the share of them that must be final for more to be worth it
 
 
@@ -49,12 +52,14 @@ class Ran(NamedTuple):
     """The findings on rows in C; `clean` are those whose verdicts are final.
 
     `near` says, for each row and verdict, whether it is so near its bound that a numerical error may matter.
-    `forms` are those of each verdict, `names` those of the claims, `held` the last values of signals.
+    `exact` are the verdicts by the mechanisms' own functions, `forms` the forms of each, `names` those of the
+    claims, and `held` the last values of signals.
     """
 
     clean: Mask
     judged: Judged
     near: Mask
+    exact: Mask
     forms: Sequence[Sequence[Form]]
     names: Sequence[str]
     held: Mapping[str, NDArray[Any]]
@@ -69,12 +74,17 @@ class RowsInC:
         claims: Sequence[Claim],
         estimates: Estimates,
         composed: Composed,
-        stepping: Stepping,
+        stepping: Callable[[], Stepping],
         values: Values,
     ):
         self._requested, self._claims, self._values = requested, claims, values
         self._estimates, self._composed, self._stepping = estimates, composed, stepping
         self._tried = self._final = 0  # rows that were run, and those that need not be run again
+
+    @property
+    def explained(self) -> tuple[str, ...]:
+        """Return a line that says so where rows are not run in C."""
+        return (f"many runs: one by one in Python, as {self.unfit}",) if self.unfit else ()
 
     @property
     def worth(self) -> bool:
@@ -94,8 +104,8 @@ class RowsInC:
             return "a system package is read anew for each row"
         if scene.accuracy is not None:
             return "the steps are chosen anew for each row"
-        for number in self._composed.alone:
-            return f"{self._claims[number].name or f'claim {number + 1}'} is judged by functions of the time"
+        if len(self._estimates.own_claims) < len(self._claims):
+            return "claims on yes-or-no outputs are decided by others"
         for name, instance in scene.instances.items():
             fmu = instance.fmu
             if not fmu.trusted or fmu.flavour != "native" or fmu.fmi != 2 or scene.isolates(name):
@@ -120,10 +130,11 @@ class RowsInC:
         switches = {each for v in facts.variables.values() for each in (v.when, v.unless)} if facts else set()
         return port.kind in ("Real", "Integer") and not port.numbers and variable not in switches
 
-    def run(self, columns: Mapping[str, Floats], scene: Scene, held: Sequence[str]) -> Ran | None:
+    def run(self, columns: Mapping[str, Floats], scene: Scene, held: Sequence[str], near: bool) -> Ran | None:
         """Run and judge rows, with the values of each key; None where all are to be run one by one.
 
-        `scene` is that of one of the rows, and `held` are signals to keep the last values of.
+        `scene` is that of one of the rows, `held` are signals to keep the last values of. With `near`, the
+        errors of verdicts near their bounds are wanted.
         """
         takers = self._takers(list(columns), scene.overrides)
         possible = self._possible(columns, takers)
@@ -132,22 +143,80 @@ class RowsInC:
             return None
         possible &= self._checked(scene, columns, takers)
         possible &= stepping.possible
-        plan = self._stepping.plan(scene, stepping.grid)
-        with self._stepping.stepped(plan) as master:
-            if any(type(slave) is not Slave for slave in master.slaves.values()):
-                return None
-            rows = _Rows(master, self._stepping.recording(plan), self._claims)
-            turned = _turned(takers, plan.pruned)
-            rows.prepare(
-                turned, list(columns), stepping, self._reached(turned, plan.pruned, stepping), self._angles
-            )
-            try:
+        own = self._stepping()
+        plan = own.plan(scene, stepping.grid)
+        turned = _turned(takers, plan.pruned)
+        try:
+            with own.stepped(plan) as master:
+                if any(type(slave) is not Slave for slave in master.slaves.values()):
+                    return None
+                rows = _Rows(RowRunner(master), own.recording(plan), self._claims)
+                reached = self._reached(turned, plan.pruned, stepping)
+                varied = Varied(turned, _numbers(rows.named, takers), stepping.column, reached)
+                rows.runner.prepare(rows.judging(), varied, self._angles)
                 judged = rows.runner.run(stepping.table, possible)
-            except Interrupted:
-                raise KeyboardInterrupt("interrupted") from None
+                close = self._near(scene, rows.forms, judged.verdicts)
+                exact = self._exact(judged, close & near)
+                judged = self._composed_too(scene, rows, varied, takers, stepping, judged, exact)
+        except Interrupted:
+            raise KeyboardInterrupt("interrupted") from None
         clean = judged.clean & self._shown(scene, columns, takers, stepping, judged.fastest)
-        near, names = self._near(scene, rows.forms, judged.verdicts), [each.name for each in self._claims]
-        return Ran(clean, judged, near, rows.forms, names, rows.held(judged, held))
+        names = [each.name for each in self._claims]
+        return Ran(clean, judged, close, exact, rows.forms, names, rows.held(judged, held))
+
+    def _exact(self, judged: Judged, wanted: Mask) -> Mask:
+        """The verdicts that the mechanisms' own functions give: the wanted ones, and those undecided."""
+        found: Mask = (wanted | (judged.verdicts[:, :, DECIDED] == 0.0)) & judged.clean[:, None]
+        found[:, [each for each in range(found.shape[1]) if each not in self._composed.claims]] = False
+        return found
+
+    def _composed_too(
+        self,
+        scene: Scene,
+        rows: "_Rows",
+        varied: Varied,
+        takers: Mapping[Variable, int],
+        stepping: "_Stepping",
+        judged: Judged,
+        exact: Mask,
+    ) -> Judged:
+        """Take in verdicts by the mechanisms' own functions, where C can; other rows are not clean."""
+        rest: Mask = np.any(exact, axis=1)
+        if not rest.any():
+            return judged
+        if not (self._composed.plain and self._count(scene, stepping, takers)):
+            return judged._replace(clean=judged.clean & ~rest)
+        counts = stepping.table[rest, -1]
+        room = int(4.0 * np.max(counts, initial=0.0)) + ROOM
+        composition = self._composed.composition(scene, rows.recording, room)
+        composition.struct.count_column = stepping.table.shape[1] - 1
+        others = [*varied.others, *_numbers(composition.named, takers), *composition.settings(takers)]
+        with composition.tangents.placed() as composition.struct.tangents:
+            struct = ctypes.addressof(composition.struct)
+            rows.runner.prepare(rows.judging(struct), replace(varied, others=others), self._angles)
+            found = rows.runner.run(stepping.table, rest, exact[:, list(self._composed.claims)])
+        again = exact & found.clean[:, None]
+        judged.verdicts[again] = found.verdicts[again]
+        notes = {place: note for place, note in judged.notes.items() if not again[place]}
+        return judged._replace(clean=judged.clean & (found.clean | ~rest), notes=notes | found.notes)
+
+    def _count(self, scene: Scene, stepping: "_Stepping", takers: Mapping[Variable, int]) -> bool:
+        """Count the steps of composed claims in each row; false where that takes more than arithmetic."""
+        needed = sorted(self._composed.needed)
+        if any(_reads(scene, name, takers) for name in needed):
+            return False
+        movements, size = (
+            Movements(self._requested),
+            scene.step_size if stepping.size is None else stepping.size,
+        )
+        ends = (
+            stepping.grid.stop_time
+            if stepping.size is None
+            else stepping.grid.start + stepping.grid.steps * size
+        )
+        longest = [movements.longest_step(scene, name)[0] for name in needed]
+        stepping.add(self._composed.steps(ends, size * scene.steps_per_period, longest))
+        return True
 
     def _takers(self, keys: Sequence[str], overrides: Mapping[str, Any]) -> dict[Variable, int]:
         """The variables that take the values of a row, each with its column; those that inherit one, too."""
@@ -278,56 +347,59 @@ class _Stepping:
     def __init__(self, scene: Scene, takers: Mapping[Variable, int], columns: Mapping[str, Floats]):
         self.grid, self.size = uniform(scene), None
         self.possible = np.ones(len(next(iter(columns.values()))), dtype=bool)
-        parts = list(columns.values())
+        self.table, self.column = np.column_stack(list(columns.values())), None
         if SPEED in takers and scene.step is None:
-            speed = np.abs(parts[takers[SPEED]])
+            speed = np.abs(self.table[:, takers[SPEED]])
             self.possible = speed >= SLOWEST
             with np.errstate(divide="ignore"):
                 self.size = 2.0 * math.pi / (speed * scene.steps_per_period)
-            parts.append(self.size)
-        self.table = np.column_stack(parts)
+            self.column = self.table.shape[1]
+            self.add(self.size)
+
+    def add(self, values: Any) -> None:
+        """Add a column, or the same number for all rows."""
+        self.table = np.column_stack([self.table, np.broadcast_to(values, len(self.table))])
 
 
 class _Rows:
-    """The questions of rows, and what runs them."""
+    """The questions of rows, and what runs them; `named` are the parameters in each question."""
 
-    def __init__(self, master: Master, recording: Recording, claims: Sequence[Claim]):
-        self.runner, self._recording, self._master = RowRunner(master), recording, master
-        times, reals, integers = self.runner.samples
+    def __init__(self, runner: RowRunner, recording: Recording, claims: Sequence[Claim]):
+        self.runner, self.recording = runner, recording
+        times, reals, integers = runner.samples
         recording.append(times, np.zeros(len(times)), reals, integers)
+        self._run = run_of(recording)
         asked = [claim.question(recording) for claim in claims]
         self.forms = [each.forms for each in asked]
-        self._run = run_of(recording)
-        self._questions = [(*self._run.question(recording, each), each.words.encode()) for each in asked]
+        self.named = [self._run.question(recording, each) for each in asked]
+        self._words = [each.words.encode() for each in asked]
 
-    def prepare(
-        self,
-        takers: Mapping[Variable, int],
-        keys: Sequence[str],
-        stepping: _Stepping,
-        reached: set[str],
-        angles: Sequence[str],
-    ) -> None:
-        """Make all ready for rows in which these variables take their values from columns."""
-        numbers = [
-            (_address(numbers, place), takers[_parts(name)])
-            for numbers, named, _words in self._questions
-            for place, name in named.items()
-            if _parts(name) in takers
-        ]
-        step = None if stepping.size is None else len(keys)
-        questions = [(numbers, words) for numbers, _named, words in self._questions]
-        judging = Judging(*self._run.rules, questions, self._run.made)
-        self.runner.prepare(judging, Varied(takers, numbers, step, reached), angles)
+    def judging(self, composed: int | None = None) -> Judging:
+        """The questions for C, with the address of the struct of composed ones."""
+        numbers = [each for each, _named in self.named]
+        asked = list(zip(numbers, self._words, range(len(numbers)), strict=True))
+        return Judging(self._run.rules, asked, self._run.made, len(asked), composed)
 
     def held(self, judged: Judged, signals: Sequence[str]) -> dict[str, NDArray[Any]]:
         """The last values of some signals."""
         found = dict[str, NDArray[Any]]()
         for signal in signals:
-            channel = self._recording.channel(signal)
+            channel = self.recording.channel(signal)
             values = (judged.reals if channel.real else judged.integers)[:, channel.column]
             found[signal] = values.astype(bool) if channel.boolean else values
         return found
+
+
+def _numbers(
+    questions: Iterable[tuple[Any, Mapping[int, str]]], takers: Mapping[Variable, int]
+) -> list[Setting]:
+    """Return where questions take parameters that differ from row to row."""
+    return [
+        (ctypes.addressof(numbers) + place * ctypes.sizeof(ctypes.c_double), takers[_parts(name)], 0)
+        for numbers, named in questions
+        for place, name in named.items()
+        if _parts(name) in takers
+    ]
 
 
 def _turned(takers: Mapping[Variable, int], pruned: Pruned) -> dict[Variable, int]:
@@ -385,7 +457,3 @@ def _allows(
 def _parts(signal: str) -> Variable:
     instance, _, variable = signal.partition(".")
     return instance, variable
-
-
-def _address(numbers: Any, place: int) -> int:
-    return ctypes.addressof(numbers) + place * ctypes.sizeof(ctypes.c_double)

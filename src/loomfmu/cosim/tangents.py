@@ -7,7 +7,8 @@ differentiated along theirs.
 
 import ctypes
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -73,15 +74,20 @@ class _Instance:
         self.variables = {each.name: each for each in variables_of(component)}
         first = self.memory.ctypes.data
         self.places = {name: first + table.offsets[n] for n, name in enumerate(self.variables)}
+        self._start: tuple[Instance, Floats] | None = None  # what was set last, without derivatives
 
     def set(self, instance: Instance, seeds: Seeds) -> None:
         """Give every variable its start value, and a parameter its derivative."""
+        if not seeds and self._start and self._start[0] is instance:
+            self.memory[:] = self._start[1]
+            return
         self.memory[:] = 0.0
         for name, each in self.variables.items():
             value = each.type(instance.values.get(name, each.start))
             numbers = [value, seeds.get((self.name, name), 0.0)] if each.type is float else [value]
             for n, number in enumerate(numbers):
                 KINDS[each.type].from_address(self.places[name] + 8 * n).value = number
+        self._start = None if seeds else (instance, self.memory.copy())
 
 
 @dataclass(frozen=True)
@@ -202,12 +208,33 @@ class Tangents:
         These are exact where outputs depend on the time and on inputs alone. Held extremes are not searched.
         """
         ones = np.ones(grid.steps)
+        with self.placed():
+            rows = self._rows(scene, grid, {}, ones, 0.0 * ones)
+        return {signal: (rows[:, n, 0], rows[:, n, 1]) for n, (signal, _place) in enumerate(self._kept)}
+
+    @contextmanager
+    def placed(self) -> Iterator[int]:
+        """Place components that hold extremes at each time instead of stepping; the plan's address for C."""
         for place in self._holding:
             self._parts[place].placed = 1
-        rows = self._rows(scene, grid, {}, ones, 0.0 * ones)
+        yield ctypes.addressof(self._plan)
         for place in self._holding:
             self._parts[place].placed = 0
-        return {signal: (rows[:, n, 0], rows[:, n, 1]) for n, (signal, _place) in enumerate(self._kept)}
+
+    @property
+    def driven(self) -> bool:
+        """Return whether inputs follow tables."""
+        return bool(self._drives)
+
+    def is_whole(self, name: str, variable: str) -> bool:
+        """Return whether a variable of an instance is no real number."""
+        return self._named[name].variables[variable].type is not float
+
+    def images(self, scene: Scene) -> Iterator[tuple[str, Floats, Floats, Mapping[str, int]]]:
+        """Yield each instance's memory, a copy of it at the start of a scene, and the places of variables."""
+        for each in self._instances:
+            each.set(scene.instances[each.name], {})
+            yield each.name, each.memory, each.memory.copy(), each.places
 
     def _rows(self, scene: Scene, grid: Grid, seeds: Seeds, starts: Floats, sizes: Floats) -> Floats:
         """Step along some seeds, and derivatives of the starts and the sizes of the steps: values and

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -46,12 +46,12 @@ def evaluated(
     return found
 
 
-def worst(found: Mapping[str, Evaluation]) -> tuple[Verdict, ...]:
+def worst(found: Mapping[str, Sequence[Verdict]]) -> tuple[Verdict, ...]:
     """Return the worst verdict on each claim in some cases, by their names, with which its note begins.
 
     That is one that fails, else an undecided one; of several the nearest to its bound, or farthest beyond.
     """
-    named = ([_of_case(name, verdict) for verdict in evaluation.claims] for name, evaluation in found.items())
+    named = ([_of_case(name, verdict) for verdict in verdicts] for name, verdicts in found.items())
     return tuple(max(each, key=_badness) for each in zip(*named, strict=True))
 
 

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 from .. import machines
 from ..cosim.claims.claims import called
 from ..cosim.importing.fmus import Flavour
-from ..cosim.master.master import Interrupted
+from ..cosim.many import Rows
 from ..cosim.prepared import Errors, Prepared
 from ..cosim.reading import read
 from ..cosim.scenes.scene import Scene
@@ -100,12 +100,22 @@ def run_rows(job: Job, settings: list[dict[str, Any]]) -> Batch:
         loom = _prepared(job)
         begun = time.perf_counter()
         labels: tuple[Label, ...] = ()
-        results = []
-        for each in settings:
-            result, verdicts = _row(job, loom, each)
-            results.append(result)
-            labels = labels or tuple(map(_label, loom.scene.claims, verdicts))
+        results: list[list[Any]] = [[]] * len(settings)
+        for rows in _alike(settings):
+            columns = {key: [settings[row][key] for row in rows] for key in settings[rows[0]]}
+            many = loom.evaluate_many(columns, errors=job.errors)
+            for place, row in enumerate(rows):
+                results[row], verdicts = _row(job, many, place)
+                labels = labels or tuple(map(_label, loom.scene.claims, verdicts))
         return Batch(results, labels, (time.perf_counter() - begun) / len(settings))
+
+
+def _alike(settings: list[dict[str, Any]]) -> list[list[int]]:
+    """Return the rows that set the same keys, together."""
+    found: dict[tuple[str, ...], list[int]] = {}
+    for row, each in enumerate(settings):
+        found.setdefault(tuple(each), []).append(row)
+    return list(found.values())
 
 
 def _label(claim: dict[str, Any], verdict: Verdict) -> Label:
@@ -131,23 +141,18 @@ def _prepared(job: Job) -> Prepared:
     return Prepared(scene, None, job.flavour, job.values, job.measures)
 
 
-def _row(job: Job, loom: Prepared, settings: dict[str, Any]) -> tuple[list[Any], tuple[Verdict, ...]]:
+def _row(job: Job, many: Rows, row: int) -> tuple[list[Any], tuple[Verdict, ...]]:
     """The result of one row and the verdicts on it."""
     try:
-        found = loom.evaluate(settings, errors=job.errors)
-        found.check_end()
-        values = [found.trace[signal][-1].item() for signal in job.values]
-        values += map(_measured, found.measured)
-    except (OSError, MemoryError):  # of the machine, not of the row
-        raise
-    except Interrupted:
-        raise KeyboardInterrupt("interrupted") from None
+        verdicts = many.verdicts(row)
+        values = [many.values[signal][row].item() for signal in job.values]
+        values += map(_measured, many.single[row].measured if job.measures else ())
     except LoomfmuError as error:
-        return failed(job, loom.scene, str(error)), ()
-    except Exception as error:  # one row of thousands must not end the others
-        return failed(job, loom.scene, described(error)), ()
+        return failed(job, many.scene, str(error)), ()
+    except Exception as error:
+        return failed(job, many.scene, described(error)), ()
     first = None
-    for claim, verdict in zip(found.scene.claims, found.claims, strict=True):
+    for claim, verdict in zip(many.scene.claims, verdicts, strict=True):
         values += ClaimResult(
             verdict.holds,
             _finite(verdict.worst),
@@ -159,7 +164,7 @@ def _row(job: Job, loom: Prepared, settings: dict[str, Any]) -> tuple[list[Any],
         )
         if not verdict.holds and first is None:
             first = called(claim, verdict)
-    return [*values, found.holds, first, "; ".join(found.warnings) or None, None], found.claims
+    return [*values, all(verdicts), first, "; ".join(many.warnings(row)) or None, None], verdicts
 
 
 def _measured(verdict: Verdict) -> float | None:

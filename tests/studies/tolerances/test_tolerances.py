@@ -77,7 +77,7 @@ def test_studies_say_what_a_longer_run_would_change(capsys: pytest.CaptureFixtur
 
 
 def test_a_worst_case_inside_the_box_is_found() -> None:
-    found = search._descended(lambda p: (p[0] - 0.37) ** 2 + abs(p[1] - 0.81), (0.0, 1.0))
+    found = search._descended(lambda p: (p[0] - 0.37) ** 2 + abs(p[1] - 0.81), (0.0, 1.0), list)
     # steps end at 2^-16 of a range
     assert found == pytest.approx((0.37, 0.81), abs=2.0**-15)
 

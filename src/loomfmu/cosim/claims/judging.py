@@ -34,7 +34,7 @@ _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {  # results and arguments
     "run_beside": (None, [_Place, *[_Int] * 6, _Text]),
     "rule_of": (_Int, [_Text]),
     "run_note": (_Text, [_Place]),
-    "run_renew": (None, [_Place]),
+    "run_renew": (None, [_Place, _Size]),
     "judge": (_Yes, [_Place, _Place, _Text, _Place]),
     "settle": (_Yes, [_Place, _Place, _Place, *[_Real] * 4]),
     "model_error": (_Real, [_Place, _Place, _Place]),
@@ -142,11 +142,10 @@ class Run:
         return _filled(trace, written), named
 
     @property
-    def rules(self) -> tuple[tuple[int, int, int], int]:
-        """The addresses of the functions that judge, forget what was found, tell the note; and of the run."""
-        functions = (self._library[name] for name in ("judge", "run_renew", "run_note"))
-        judge, renew, note = (ctypes.cast(each, _Place).value or 0 for each in functions)
-        return (judge, renew, note), int(self._run)
+    def rules(self) -> tuple[int, ...]:
+        """The addresses of the functions that judge, settle, renew and tell the note, and of the run."""
+        functions = (self._library[name] for name in ("judge", "settle", "run_renew", "run_note"))
+        return (*(ctypes.cast(each, _Place).value or 0 for each in functions), int(self._run))
 
     def settled(self, trace: Signals, question: Question, verdict: Verdict, *changes: float) -> Verdict:
         """Return a verdict with its error; `changes` are what `settle` of judge.h takes after the verdict."""

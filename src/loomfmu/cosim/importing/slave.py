@@ -249,7 +249,7 @@ class Slave(Logged):
         return [*found, self.plain_call("EnterInitializationMode")]
 
     def places_of(self, variable: str) -> list[tuple[int, bool]]:
-        """Return from where `start_calls` take the value of a variable, if they do, and whether it is whole."""
+        """Return where `start_calls` take the value of a variable from, if they do, and if it is whole."""
         found = []
         for each in self._settings_of(next(iter(self._settings))):
             if variable in each.names:

@@ -17,39 +17,45 @@ from .steppers import SOURCE, Action, arrays, fields
 
 Floats = NDArray[np.float64]
 Variable = tuple[str, str]  # an instance, and one of its variables
+Setting = tuple[
+    int, int, int
+]  # a place, the column that it takes, 0 for a double or the kind of whole number
 MOST, FIRST = 4096, 16  # rows that are handed over at once
 ROOM = 1 << 20  # bytes for the notes of these rows
 
 
 class Judging(NamedTuple):
-    """The functions of the rules, at their addresses, with their run; the questions and the words of each.
+    """The functions of the rules and their run; questions, each with its words and the number of its verdict.
 
-    `copies` are the arrays from which the rules read signals that are no real numbers.
+    `copies` are the arrays from which the rules read signals that are no real numbers, `verdicts` is how many
+    there are with those that are `composed`: the address of their struct, or None.
     """
 
-    functions: tuple[int, int, int]
-    run: int
-    questions: Sequence[tuple[Any, bytes]]
+    rules: tuple[int, ...]
+    questions: Sequence[tuple[Any, bytes, int]]
     copies: Mapping[str, Floats]
+    verdicts: int
+    composed: int | None
 
 
 @dataclass(frozen=True)
 class Varied:
     """The columns of the numbers that differ from row to row, by the variables that take them.
 
-    `numbers` are places in questions, each with its column, `step` is the column of the step size, if it
-    differs, and `reached` are the instances that the values reach: the others run once.
+    `others` are further places that take numbers, `step` is the column of the step size, if it differs, and
+    `reached` are the instances that the values reach: the others run once.
     """
 
     variables: Mapping[Variable, int]
-    numbers: Sequence[tuple[int, int]]
+    others: Sequence[Setting]
     step: int | None
     reached: Collection[str]
 
 
 class Judged(NamedTuple):
-    """The findings on rows: whether they were clean, the numbers of their verdicts, their notes by row and verdict,
-    the fastest step of each angle, and all values at the end.
+    """The findings on rows: whether they were clean, the numbers of their verdicts, notes by row and verdict.
+
+    `fastest` has the highest speed of each angle in any step, `reals` and `integers` the values at the end.
     """
 
     clean: NDArray[np.bool_]
@@ -82,12 +88,21 @@ class _Copied(ctypes.Structure):
     _fields_ = fields(place="int64", to="void_p", boolean="int64")
 
 
-class _Asked(ctypes.Structure):
-    _fields_ = fields(list="void_p", words="char_p")
+class AskedInC(ctypes.Structure):
+    """A question for C."""
+
+    _fields_ = fields(list="void_p", words="char_p", number="int64")
 
 
-class _Judges(ctypes.Structure):
-    _fields_ = fields(judge="void_p", renew="void_p", note="void_p", run="void_p")
+def asked_in_c(numbers: Any, words: bytes, number: int) -> AskedInC:
+    """Return a question for C; whoever asks keeps its numbers and words."""
+    return AskedInC(ctypes.addressof(numbers), words, number)
+
+
+class JudgesInC(ctypes.Structure):
+    """The functions of the rules, and their run, for C."""
+
+    _fields_ = fields(judge="void_p", settle="void_p", renew="void_p", note="void_p", run="void_p")
 
 
 LISTS = ("settings", "shafts", "copies", "asked", "angles", "heard")
@@ -101,7 +116,8 @@ class _Rows(ctypes.Structure):
         ("whole", _Way),
         ("reached", _Way),
         *arrays(*LISTS, *VALUES),
-        ("judges", _Judges),
+        ("judges", JudgesInC),
+        *fields(composed="void_p", verdicts="int64"),
         *fields(**dict.fromkeys((*PLACES, *SAMPLES), "void_p")),
         *fields(steps="int64", step_column="int64", warm="int64"),
     ]
@@ -110,6 +126,7 @@ class _Rows(ctypes.Structure):
 class _Found(ctypes.Structure):
     _fields_ = fields(
         clean="void_p",
+        exact="void_p",
         verdicts="void_p",
         fastest="void_p",
         reals="void_p",
@@ -151,7 +168,7 @@ class RowRunner:
     def prepare(self, judging: Judging, varied: Varied, angles: Sequence[str]) -> None:
         """Fill the structs for rows in which these values differ; `angles` are the signals to watch."""
         master, signals = self._master, self._signals
-        self._angles, self._verdicts = len(angles), len(judging.questions)
+        self._angles, self._verdicts = len(angles), judging.verdicts
         self._calls = {name: self._calls_of(name, slave) for name, slave in master.slaves.items()}
         others = [name for name in master.slaves if name not in varied.reached]
         kept = [slot for (name, _variable), slot in master.slots.items() if name in others]
@@ -160,16 +177,12 @@ class RowRunner:
             whole=self._way(master.slaves),
             reached=self._way(name for name in master.slaves if name in varied.reached),
         )
-        self._kept += [
-            shafts,
-            [asked for asked, _words in judging.questions],
-            [words for _asked, words in judging.questions],
-        ]
+        self._kept.append(judging)
         self._list(rows, "shafts", shafts)
-        self._list(rows, "settings", self._settings(varied, judging, shafts))
+        self._list(rows, "settings", self._settings(varied, shafts))
         self._list(rows, "copies", self._copies(judging.copies))
-        asked = [_Asked(ctypes.addressof(numbers), words) for numbers, words in judging.questions]
-        self._list(rows, "asked", (_Asked * len(asked))(*asked))
+        asked = [asked_in_c(*each) for each in judging.questions]
+        self._list(rows, "asked", (AskedInC * len(asked))(*asked))
         heard = [ctypes.addressof(slave.heard) for slave in master.slaves.values()]
         self._list(rows, "heard", (ctypes.c_void_p * len(heard))(*heard))
         self._list(rows, "angles", _places(master.slots[_parts(signal)][1] for signal in angles))
@@ -178,11 +191,11 @@ class RowRunner:
             self._list(rows, f"kept_{name}", places)
             self._list(rows, f"driven_{name}", _places(signals.driven_slots(real=real)))
             self._list(rows, name, getattr(signals, name))
-        rows.judges = _Judges(*judging.functions, judging.run)
+        rows.judges = JudgesInC(*judging.rules)
+        rows.composed, rows.verdicts = judging.composed, judging.verdicts
         rows.interrupted = ctypes.addressof(master.interrupted)
-        for name, each in zip(PLACES[1:], (self._experiment, *self._span), strict=True):
-            setattr(rows, name, each.ctypes.data)
-        for name, each in zip(SAMPLES, (*self._driven, *self._blocks), strict=True):
+        memory: list[NDArray[Any]] = [self._experiment, *self._span, *self._driven, *self._blocks]
+        for name, each in zip((*PLACES[1:], *SAMPLES), memory, strict=True):
             setattr(rows, name, each.ctypes.data)
         rows.steps = master.grid.steps
         rows.step_column = -1 if varied.step is None else varied.step
@@ -217,22 +230,18 @@ class RowRunner:
             places = (slots[name, each][1] for each in ("angle", "velocity", "acceleration"))
             yield _Shaft(*places, shaft.speed, shaft.start_angle)
 
-    def _settings(self, varied: Varied, judging: Judging, shafts: Any) -> Any:
+    def _settings(self, varied: Varied, shafts: Any) -> Any:
         """Return where the numbers of a row go."""
-        known = {**self._master.slaves}
-        found = [
-            (*place, column)
-            for (name, variable), column in varied.variables.items()
-            if name in known
-            for place in known[name].places_of(variable)
-        ]
+        slaves, found = self._master.slaves, list[Setting](varied.others)
+        for (name, variable), column in varied.variables.items():
+            places = slaves[name].places_of(variable) if name in slaves else []
+            found += [(place, column, int(whole)) for place, whole in places]
         for shaft, name in zip(shafts, self._signals.shafts, strict=True):
             for variable in ("speed", "start_angle"):
-                column = varied.variables.get((name, variable))
-                if column is not None:
-                    found.append((ctypes.addressof(shaft) + getattr(_Shaft, variable).offset, False, column))
-        found += [(place, False, column) for place, column in varied.numbers]
-        return (_Setting * len(found))(*(_Setting(place, column, whole) for place, whole, column in found))
+                if (name, variable) in varied.variables:
+                    place = ctypes.addressof(shaft) + getattr(_Shaft, variable).offset
+                    found.append((place, varied.variables[name, variable], 0))
+        return (_Setting * len(found))(*(_Setting(*each) for each in found))
 
     def _copies(self, copies: Mapping[str, Floats]) -> Any:
         found = []
@@ -241,15 +250,21 @@ class RowRunner:
             found.append(_Copied(slot, values.ctypes.data, kind == "Boolean"))
         return (_Copied * len(found))(*found)
 
-    def run(self, values: Floats, wanted: NDArray[np.bool_]) -> Judged:
-        """Run the rows that are wanted, each with its values along the columns."""
+    def run(
+        self, values: Floats, wanted: NDArray[np.bool_], exact: NDArray[np.bool_] | None = None
+    ) -> Judged:
+        """Run the rows that are wanted, each with its values along the columns, and judge them.
+
+        Of each row `exact` says which of the composed claims are judged, and no others are.
+        """
         for slave in self._master.slaves.values():
             slave.renew()
         parts, first, size = [], 0, FIRST
         while first < len(values):
             part = slice(first, first + min(size, MOST))
             begun = perf_counter()
-            parts.append(self._part(np.ascontiguousarray(values[part]), wanted[part], first))
+            own = None if exact is None else np.ascontiguousarray(exact[part])
+            parts.append(self._part(np.ascontiguousarray(values[part]), wanted[part], own, first))
             grown = PATIENCE / max(perf_counter() - begun, 1e-6)
             size, first = max(1, int(size * min(8.0, grown))), part.stop
             for slave in self._master.slaves.values():
@@ -262,7 +277,9 @@ class RowRunner:
         }
         return Judged(notes=notes, **joined)
 
-    def _part(self, values: Floats, wanted: NDArray[np.bool_], first: int) -> Judged:
+    def _part(
+        self, values: Floats, wanted: NDArray[np.bool_], exact: NDArray[np.bool_] | None, first: int
+    ) -> Judged:
         count, texts = len(values), ctypes.create_string_buffer(ROOM)
         found = Judged(
             np.array(wanted),
@@ -273,8 +290,15 @@ class RowRunner:
             np.zeros((count, len(self._signals.integers)), dtype=np.int32),
         )
         notes = np.full((count, self._verdicts), -1, dtype=np.int64)
-        arrays_ = (found.clean, found.verdicts, found.fastest, found.reals, found.integers, notes)
-        given = _Found(*(each.ctypes.data for each in arrays_), ctypes.addressof(texts), ROOM, 0)
+        filled = (found.verdicts, found.fastest, found.reals, found.integers, notes)
+        given = _Found(
+            found.clean.ctypes.data,
+            None if exact is None else exact.ctypes.data,
+            *(each.ctypes.data for each in filled),
+            ctypes.addressof(texts),
+            ROOM,
+            0,
+        )
         place = ctypes.c_void_p(values.ctypes.data)
         columns = ctypes.c_size_t(values.shape[1])
         done = self._library.run_rows(

@@ -22,7 +22,7 @@ from ...errors import LoomfmuError, listed, shown, within
 from ...traces import Verdict
 from ..cases import Case
 from ..corners import corners_of
-from ..evaluations import Evaluations
+from ..evaluations import LOT, Evaluations
 from ..span import Span, set_twice, span_of, warnings_of
 from .proven import proven
 from .results import Boundary, ClaimLimits, Limit, Limits, Stretch
@@ -80,7 +80,9 @@ class _Runs(Evaluations):
     def scan(self, grid: Sequence[float], advance: Callable[[int], None]) -> None:
         """Run all points. Raises LoomfmuError where one cannot be run, with the ones that can."""
         failed: dict[float, LoomfmuError] = {}
-        for value in grid:
+        for place, value in enumerate(grid):
+            if place % LOT == 0:
+                self.run_at((each,) for each in grid[place : place + LOT])
             try:
                 self.at(value)
             except LoomfmuError as error:

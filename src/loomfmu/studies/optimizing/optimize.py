@@ -168,7 +168,7 @@ def _written(runs: Runs, design: Design, names: Sequence[str], path: Path) -> Be
     loom = Prepared(path, None, study.flavour, (), study.measures)
     # with their errors, as any run of it has them
     cases = {case.name: evaluated(loom, case, "all") for case in study.situations}
-    verdicts = worst(cases)
+    verdicts = worst({name: each.claims for name, each in cases.items()})
     errors = [max(_error_of(goal, each) for each in cases.values()) for goal in study.goals]
     values = dict(zip((each.key for each in study.variables), design.values, strict=True))
     goals = [goal.sign * float(height) for goal, height in zip(study.goals, design.heights, strict=True)]

@@ -24,6 +24,8 @@ from .distributions import Distribution, distribution_of
 from .shares import ALL, Share, Shares
 from .tolerances import check_asked, check_twice, tolerance_of
 
+LOT = 100  # looms that are run at once
+
 
 def draw_looms(
     scene: str | Path | Scene,
@@ -80,18 +82,22 @@ def _drawn(
     """Draw looms, run each, and count in how many the claims hold."""
     values = _values(distributions, looms, seed)
     words, warnings = [], tuple[str, ...]()
-    for row in range(looms):
-        settings = {each.key: each.varied.setting(values[each.key][row]) for each in distributions}
-        try:
-            found = loom.evaluate(settings, errors="near")
-            found.check_end()
-        except LoomfmuError as error:
-            drawn = (f"{each.key} = {each.varied.show(values[each.key][row])}" for each in distributions)
-            raise LoomfmuError(f"loom {row + 1} of {looms}, with {', '.join(drawn)}: {error}") from None
-        verdicts = found.claims
-        warnings = warnings or found.warnings
-        words.append([each.word for each in verdicts])
-        advance(1)
+    for first in range(0, looms, LOT):
+        rows = range(first, min(first + LOT, looms))
+        settings = {
+            each.key: [each.varied.setting(values[each.key][row]) for row in rows] for each in distributions
+        }
+        many = loom.evaluate_many(settings, errors="near")
+        for place, row in enumerate(rows):
+            try:
+                verdicts = many.verdicts(place)
+            except LoomfmuError as error:
+                drawn = (f"{each.key} = {each.varied.show(values[each.key][row])}" for each in distributions)
+                where = f"loom {row + 1} of {looms}, with {', '.join(drawn)}"
+                raise LoomfmuError(f"{where}: {error}") from None
+            warnings = warnings or many.warnings(place)
+            words.append([each.word for each in verdicts])
+            advance(1)
     table = np.array(words)
     names = [called(*each) for each in zip(loom.scene.claims, verdicts, strict=True)]
     claims = tuple(_share(name, table[:, [place]]) for place, name in enumerate(names))

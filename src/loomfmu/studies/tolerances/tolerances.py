@@ -17,7 +17,7 @@ from ...cosim.scenes.scene import Scene
 from ...display.progress import progress as progress_bar
 from ...errors import LoomfmuError
 from ...sweeps.varied import Keyed
-from ..evaluations import Evaluations
+from ..evaluations import LOT, Evaluations
 from ..span import Span, set_twice, span_of, warnings_of
 from .distributions import ends_within
 from .proven import proven
@@ -141,9 +141,11 @@ class _Box(Evaluations):
 
     def searched(self, points: Sequence[Shares], advance: Callable[[int], None]) -> Tolerances:
         """The worst case of each claim."""
-        for point in points:
-            self.at(*self._values(point))
-            advance(1)
+        for first in range(0, len(points), LOT):
+            lot = self._at_once(points[first : first + LOT])
+            for point in lot:
+                self.at(*self._values(point))
+                advance(1)
         found = []
         for number in range(len(self._loom.scene.claims)):
             found.append(self._worst_case(number, points))
@@ -152,6 +154,11 @@ class _Box(Evaluations):
         return Tolerances(
             title, self._spans, tuple(found), len(self), warnings_of(self._spans, self.warnings)
         )
+
+    def _at_once(self, points: Sequence[Shares]) -> Sequence[Shares]:
+        """Run points together, and return them."""
+        self.run_at(tuple(self._values(point)) for point in points)
+        return points
 
     def _worst_case(self, number: int, points: Sequence[Shares]) -> WorstCase:
         def distance(point: Shares) -> float:
@@ -162,7 +169,7 @@ class _Box(Evaluations):
         least, most = distance(ranked[0]), distance(ranked[-1])
         bound = self.at(*self._values(points[0]))[number].bound
         alike = least == most or most - least <= SAME * abs(bound)
-        worst = points[0] if alike else _descended(distance, ranked[0])
+        worst = points[0] if alike else _descended(distance, ranked[0], self._at_once)
         own, verdict = (self.estimated(*self._values(place))[number] for place in (points[0], worst))
         costs = []
         for place, span in enumerate(self._spans):
@@ -178,13 +185,17 @@ class _Box(Evaluations):
         return [span.at(share) for span, share in zip(self._spans, point, strict=True)]
 
 
-def _descended(distance: Callable[[Shares], float], point: Shares) -> Shares:
+def _descended(
+    distance: Callable[[Shares], float],
+    point: Shares,
+    at_once: Callable[[Sequence[Shares]], Sequence[Shares]],
+) -> Shares:
     """A point near that one with a smaller distance, if there is one: a search along each value in turn."""
     if math.isinf(distance(point)):
         return point
     step = FIRST
     while step >= LAST:
-        better = min(_neighbours(point, step), key=distance, default=point)
+        better = min(at_once(_neighbours(point, step)), key=distance, default=point)
         if distance(better) < distance(point):
             point = better
         else:

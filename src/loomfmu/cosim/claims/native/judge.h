@@ -175,9 +175,10 @@ EXPORT(model_error) double model_error(struct run *run, const double *question, 
 
 #ifndef __wasm__
 
-/* Forget all that was found, since the samples are those of another run. */
-EXPORT(run_renew) void run_renew(struct run *run)
+/* Forget all that was found: there are so many samples of another run. */
+EXPORT(run_renew) void run_renew(struct run *run, ptrdiff_t samples)
 {
+    run->samples = samples;
     release(&run->scratch);
     release(&run->kept);
     run->note = "";

@@ -14,7 +14,7 @@ struct way { /* through a run of some FMUs: their values, their start, a step, t
 struct setting { /* a number of which each row has its own: a start value, or one that a claim takes */
     void *to;
     int64_t column;
-    int64_t whole; /* for an int32_t */
+    int64_t whole; /* 1 for an int32_t, 2 for an int64_t */
 };
 
 struct shaft { /* one that needs no FMU: the places of its values, and what it turns by */
@@ -26,18 +26,6 @@ struct copied { /* integers that claims take as real numbers */
     int64_t place;
     double *to;
     int64_t boolean;
-};
-
-struct asked { /* a question as the rules take it, and its words */
-    const double *list;
-    const char *words;
-};
-
-struct judges { /* the functions of the other library, with its run */
-    bool (*judge)(void *, const double *, const char *, void *);
-    void (*renew)(void *);
-    const char *(*note)(const void *);
-    void *run;
 };
 
 enum { FIELDS = 12 }; /* of a verdict */
@@ -69,6 +57,8 @@ struct rows {
     int32_t *integers;
     size_t integer_count;
     struct judges judges;
+    const struct composed *composed; /* NULL where nothing is judged so */
+    int64_t verdicts;
     const int32_t *interrupted;
     double *experiment; /* its start and its end */
     double *starts, *sizes, *times;
@@ -83,6 +73,7 @@ struct rows {
 
 struct found { /* of each row, one after the other */
     char *clean;
+    const char *exact; /* of each row, the composed questions to be judged; NULL where all others are */
     double *verdicts, *fastest, *reals;
     int32_t *integers;
     int64_t *notes; /* the place of each note in the texts; -1 for none */
@@ -123,8 +114,10 @@ static void take_values(const struct rows *rows, const double *values)
 {
     for (size_t place = 0; place < rows->setting_count; place++) {
         const struct setting *setting = &rows->settings[place];
-        if (setting->whole)
+        if (setting->whole == 1)
             *(int32_t *)setting->to = (int32_t)values[setting->column];
+        else if (setting->whole)
+            *(int64_t *)setting->to = (int64_t)values[setting->column];
         else
             *(double *)setting->to = values[setting->column];
     }
@@ -222,27 +215,56 @@ static void copy_integers(const struct rows *rows)
     }
 }
 
-/* Judge a row that was run; false where its notes find no room, or the rules no memory. */
+/* Keep the note on the last verdict; false where it finds no room. */
+static bool keep_note(const struct judges *judges, struct found *found, int64_t verdict)
+{
+    const char *note = judges->note(judges->run);
+    const int64_t length = (int64_t)strlen(note) + 1;
+    if (length > found->room - found->used)
+        return false;
+    found->notes[verdict] = length > 1 ? found->used : -1;
+    memcpy(found->texts + found->used, note, (size_t)length);
+    found->used += length;
+    return true;
+}
+
+/* Judge a row on its samples; false where its notes find no room, or the rules no memory. */
 static bool judge_row(const struct rows *rows, int64_t row, struct found *found)
 {
-    const size_t first = (size_t)row * rows->asked_count;
+    const struct judges *judges = &rows->judges;
     copy_integers(rows);
-    rows->judges.renew(rows->judges.run);
+    judges->renew(judges->run, (ptrdiff_t)rows->steps + 1);
     for (size_t place = 0; place < rows->asked_count; place++) {
         const struct asked *asked = &rows->asked[place];
-        if (!rows->judges.judge(rows->judges.run, asked->list, asked->words,
-                                found->verdicts + FIELDS * (first + place)))
+        const int64_t verdict = row * rows->verdicts + asked->number;
+        if (!judges->judge(judges->run, asked->list, asked->words, found->verdicts + FIELDS * verdict) ||
+            !keep_note(judges, found, verdict))
             return false;
-        const char *note = rows->judges.note(rows->judges.run);
-        const size_t length = strlen(note);
-        found->notes[first + place] = -1;
-        if (length == 0)
+    }
+    return true;
+}
+
+/* Judge what follows from the time alone; false as above, and where it takes more samples than there is room for. */
+static bool compose_row(const struct rows *rows, int64_t row, int64_t steps, struct found *found)
+{
+    const struct composed *composed = rows->composed;
+    const struct judges *judges = &composed->judges;
+    const int64_t first = first_times(composed, steps, rows->steps + 1, rows->times, rows->real_rows, rows->real_count);
+    const char *wanted = found->exact + (size_t)row * composed->asked_count;
+    const int64_t count = divide(composed, first, wanted);
+    if (count == 0)
+        return false;
+    hold_extremes(composed, count);
+    judges->renew(judges->run, (ptrdiff_t)count);
+    for (size_t place = 0; place < composed->asked_count; place++) {
+        const struct asked *asked = &composed->asked[place];
+        const int64_t verdict = row * rows->verdicts + asked->number;
+        double *numbers = found->verdicts + FIELDS * verdict;
+        if (!wanted[place])
             continue;
-        if (found->room - found->used < (int64_t)length + 1)
+        if (!judges->judge(judges->run, asked->list, asked->words, numbers) || !keep_note(judges, found, verdict) ||
+            !judges->settle(judges->run, asked->list, numbers, 0.0, composed->left[place], composed->share, 0.0))
             return false;
-        found->notes[first + place] = found->used;
-        memcpy(found->texts + found->used, note, length + 1);
-        found->used += (int64_t)length + 1;
     }
     return true;
 }
@@ -269,7 +291,9 @@ EXPORT int64_t run_rows(struct rows *rows, int64_t count, const double *values, 
             memcpy(found->integers + (size_t)row * rows->integer_count,
                    rows->integer_rows + last * rows->integer_count, rows->integer_count * sizeof(int32_t));
             rows->warm = rows->step_column < 0;
-            clean = judge_row(rows, row, found);
+            const double *own = values + (size_t)row * columns;
+            clean = found->exact ? compose_row(rows, row, (int64_t)own[rows->composed->count_column], found)
+                                 : judge_row(rows, row, found);
         }
         found->clean[row] = clean;
     }

@@ -315,4 +315,5 @@ EXPORT int64_t advance(struct plan *plan, int64_t steps, const double *starts, c
     return steps;
 }
 
+#include "compose.h"
 #include "rows.h"

@@ -86,3 +86,42 @@ EXPORT void step_tangents(const struct tangents *plan, int64_t steps, const dual
         }
     }
 }
+
+/* The slope of rates at a sample, by the parabola through it and its neighbours. */
+static double bend(int64_t count, const double *time, const double *rates, int64_t stride, int64_t place)
+{
+    const int64_t middle = place < 1 ? 1 : place > count - 2 ? count - 2 : place;
+    const double *t = time + middle, before = t[0] - t[-1], after = t[1] - t[0], both = before + after;
+    const double *r = rates + stride * (middle - 1), r0 = r[0], r1 = r[stride], r2 = r[2 * stride];
+    if (place < middle)
+        return -(2.0 * before + after) / (before * both) * r0 + both / (before * after) * r1 -
+               before / (after * both) * r2;
+    if (place > middle)
+        return after / (before * both) * r0 - both / (before * after) * r1 +
+               (2.0 * after + before) / (after * both) * r2;
+    return -after / (before * both) * r0 + (after - before) / (before * after) * r1 + before / (after * both) * r2;
+}
+
+static double least(double one, double other) /* NaN if one of them is */
+{
+    return one < other || isnan(one) ? one : other;
+}
+
+/* Finds what a motion, times a sign, does not go below on each step: its cubic, less the share `doubt` of the difference
+ * between its second rates and those of the samples of its rates, of which there are three at least. */
+EXPORT void find_lowest(int64_t count, double doubt, double sign, const double *time, const double *values,
+                        const double *rates, int64_t stride, double *lowest)
+{
+    double bends[2] = {0.0, sign * bend(count, time, rates, stride, 0)};
+    for (int64_t place = 0; place + 1 < count; place++, values += stride) {
+        const double h = time[place + 1] - time[place], start = sign * values[0], end = sign * values[stride];
+        const double first = sign * rates[stride * place] * h, second = sign * rates[stride * (place + 1)] * h;
+        const double rise = end - start;
+        bends[0] = bends[1];
+        bends[1] = sign * bend(count, time, rates, stride, place + 1);
+        const double before = fabs(bends[0] * h * h - (6.0 * rise - 4.0 * first - 2.0 * second));
+        const double after = fabs(bends[1] * h * h - (2.0 * first + 4.0 * second - 6.0 * rise));
+        const double low = least(least(start, start + first / 3.0), least(end - second / 3.0, end));
+        lowest[place] = low + doubt * least(-before, -after);
+    }
+}
