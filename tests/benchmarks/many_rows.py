@@ -15,7 +15,7 @@ from loomfmu.cosim.scenes.scene import Scene
 from loomfmu.units import Si
 
 NAME = "many"
-SIZES = {"full": (1000, 7), "quick": (200, 3), "tiny": (20, 1)}  # rows of the belt, repeats
+SIZES = {"full": (400, 5), "quick": (200, 3), "tiny": (20, 1)}  # rows of the belt, repeats
 LONG = 24  # a row of the loom takes the steps of so many rows of the belt, all FMUs counted
 STEPS = 180  # in the one revolution of a row of the belt
 BELT = f"""
@@ -107,7 +107,7 @@ def section(find: Find) -> str:
     return parts(
         "`loom.evaluate_many` beside `loom.evaluate` row by row, in one process; both give the same bits."
         f" The belt is that of the demonstration loom, with two FMUs, {STEPS} steps and two claims; the loom"
-        " is the whole demonstration, with 4320 steps and six claims. Errors are those that are estimated: rows"
-        " with a verdict near its bound, whose error coarser steps show, are run singly.",
+        " is the whole demonstration, with 4320 steps and six claims. Errors are those that are estimated:"
+        " a row with a verdict near its bound, whose error coarser steps show, is run singly.",
         whole(find(NAME)),
     )

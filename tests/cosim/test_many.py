@@ -90,6 +90,18 @@ def test_rows_of_a_belt_are_those_of_single_runs() -> None:
         assert 60 > len(many.single) > 0
 
 
+def test_verdicts_near_their_bounds_are_exact_in_c_too() -> None:
+    """By the mechanisms' own functions, which need no coarser steps; claims on windows are left to Python."""
+    ranges = {key: RANGES[key] for key in ("shaft.speed", "belt.bending_stiffness")}
+    with prepare(belt()) as found:
+        many = checked(found, drawn(ranges, 40))
+        assert any(map(many.near, range(40))) and not many.single
+    window = claim("above", signal="belt.margin", bound=0.2, window=["90 deg", "270 deg"])
+    with prepare(belt(window)) as found:
+        many = checked(found, drawn(ranges, 40))
+        assert 0 < len(many.single) == sum(bool(many.near(row)) for row in range(40)) < 40
+
+
 def test_only_what_a_value_reaches_runs_again() -> None:
     """The rows of a belt alone, whose weft insertion runs once."""
     with prepare(belt(), values=["weft.travel", "belt.margin"]) as found:
