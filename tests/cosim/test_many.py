@@ -117,6 +117,7 @@ def test_refused_rows_say_what_a_single_run_says() -> None:
         many = checked(found, values, errors="none")
         assert sorted(many.errors) == [0, 3]
         assert list(many.single) == [5]
+        assert list(checked(found, {"shaft.speed": [60.0, 0.0, 61.0, 62.0, 63.0]}).errors) == [1]
 
 
 def test_an_fmu_refuses_single_rows() -> None:

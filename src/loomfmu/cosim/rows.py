@@ -7,7 +7,7 @@ other: so every row has the verdicts that it has alone.
 
 import ctypes
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -16,33 +16,30 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..declaring.upstream import sources_of, upstream
-from ..errors import LoomfmuError
 from ..fmi.native.libraries import library_of
-from ..traces import Recording
 from .claims.claim import Claim
-from .claims.judging import FIELDS, Form, run_of
+from .claims.judging import FIELDS, Form
 from .claims.movers import whole_turn
 from .composed import Composed
 from .dependence import TOO_LONG
 from .estimates import Estimates, coarseness, usual
 from .importing.slave import Slave
-from .master.grid import contradicted, passed_by, uniform
+from .master.grid import contradicted, passed_by
 from .master.master import Interrupted
-from .master.rows import Judged, Judging, RowRunner, Setting, Variable, Varied
+from .master.rows import Judged, RowRunner, Variable, Varied
 from .master.steppers import SOURCE
 from .planning.plan import Stepping
 from .planning.pruning import Pruned
 from .planning.requested import Movements, Requested, parameter_of
 from .scenes.graph import step_order
-from .scenes.instances import Instance, altered
+from .scenes.instances import altered
 from .scenes.scene import Scene
-from .scenes.settings import SLOWEST
 from .scenes.values import Values
+from .varying import Questions, Steps, allows, numbers_of, parts_of, reads, turned, with_row
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 ROUNDING = 1e-9  # far above that of speeds and steps: rows within it are run as any other
-SPEED = ("shaft", "speed")
 DECIDED = FIELDS.index("decided")
 ROOM = 4096  # samples more than four times those that composed claims begin with
 ENOUGH, LEAST = 16, 0.3  # rows, and the share of them that must be final for more to be worth it
@@ -138,21 +135,21 @@ class RowsInC:
         """
         takers = self._takers(list(columns), scene.overrides)
         possible = self._possible(columns, takers)
-        stepping = _Stepping(scene, takers, columns)
+        stepping = Steps(scene, takers, columns)
         if self._steps_differ(scene, stepping, takers):
             return None
         possible &= self._checked(scene, columns, takers)
         possible &= stepping.possible
         own = self._stepping()
         plan = own.plan(scene, stepping.grid)
-        turned = _turned(takers, plan.pruned)
+        turning = turned(takers, plan.pruned)
         try:
             with own.stepped(plan) as master:
                 if any(type(slave) is not Slave for slave in master.slaves.values()):
                     return None
-                rows = _Rows(RowRunner(master), own.recording(plan), self._claims)
-                reached = self._reached(turned, plan.pruned, stepping)
-                varied = Varied(turned, _numbers(rows.named, takers), stepping.column, reached)
+                rows = Questions(RowRunner(master), own.recording(plan), self._claims)
+                reached = self._reached(turning, plan.pruned, stepping)
+                varied = Varied(turning, numbers_of(rows.named, takers), stepping.column, reached)
                 rows.runner.prepare(rows.judging(), varied, self._angles)
                 judged = rows.runner.run(stepping.table, possible)
                 close = self._near(scene, rows.forms, judged.verdicts)
@@ -173,10 +170,10 @@ class RowsInC:
     def _composed_too(
         self,
         scene: Scene,
-        rows: "_Rows",
+        rows: Questions,
         varied: Varied,
         takers: Mapping[Variable, int],
-        stepping: "_Stepping",
+        stepping: Steps,
         judged: Judged,
         exact: Mask,
     ) -> Judged:
@@ -190,7 +187,7 @@ class RowsInC:
         room = int(4.0 * np.max(counts, initial=0.0)) + ROOM
         composition = self._composed.composition(scene, rows.recording, room)
         composition.struct.count_column = stepping.table.shape[1] - 1
-        others = [*varied.others, *_numbers(composition.named, takers), *composition.settings(takers)]
+        others = [*varied.others, *numbers_of(composition.named, takers), *composition.settings(takers)]
         with composition.tangents.placed() as composition.struct.tangents:
             struct = ctypes.addressof(composition.struct)
             rows.runner.prepare(rows.judging(struct), replace(varied, others=others), self._angles)
@@ -200,22 +197,17 @@ class RowsInC:
         notes = {place: note for place, note in judged.notes.items() if not again[place]}
         return judged._replace(clean=judged.clean & (found.clean | ~rest), notes=notes | found.notes)
 
-    def _count(self, scene: Scene, stepping: "_Stepping", takers: Mapping[Variable, int]) -> bool:
+    def _count(self, scene: Scene, stepping: Steps, takers: Mapping[Variable, int]) -> bool:
         """Count the steps of composed claims in each row; false where that takes more than arithmetic."""
         needed = sorted(self._composed.needed)
-        if any(_reads(scene, name, takers) for name in needed):
+        if any(reads(scene, name, takers) for name in needed):
             return False
-        movements, size = (
-            Movements(self._requested),
-            scene.step_size if stepping.size is None else stepping.size,
-        )
-        ends = (
-            stepping.grid.stop_time
-            if stepping.size is None
-            else stepping.grid.start + stepping.grid.steps * size
-        )
+        movements, grid = Movements(self._requested), stepping.grid
+        size = scene.step_size if stepping.size is None else stepping.size
+        ends = grid.stop_time if stepping.size is None else grid.start + grid.steps * size
         longest = [movements.longest_step(scene, name)[0] for name in needed]
-        stepping.add(self._composed.steps(ends, size * scene.steps_per_period, longest))
+        with np.errstate(invalid="ignore"):  # of rows that are not possible
+            stepping.add(self._composed.steps(ends, size * scene.steps_per_period, longest))
         return True
 
     def _takers(self, keys: Sequence[str], overrides: Mapping[str, Any]) -> dict[Variable, int]:
@@ -239,7 +231,7 @@ class RowsInC:
                 found &= (values == np.round(values)) & (np.abs(values) < 2**31)
         return found
 
-    def _steps_differ(self, scene: Scene, stepping: "_Stepping", takers: Mapping[Variable, int]) -> bool:
+    def _steps_differ(self, scene: Scene, stepping: Steps, takers: Mapping[Variable, int]) -> bool:
         """Return whether inputs that the scene drives may not go with the steps of each row."""
         rates = {
             (drive.instance, rate)
@@ -254,22 +246,22 @@ class RowsInC:
         table, found = list(columns.values()), np.ones(len(next(iter(columns.values()))), dtype=bool)
         for claim in self._claims:
             bound = getattr(claim, "bound", None)
-            column = takers.get(_parts(bound)) if isinstance(bound, str) else None
+            column = takers.get(parts_of(bound)) if isinstance(bound, str) else None
             if column is not None:
                 found &= table[column] >= 0.0
-            reads = set[str]()
+            asked = set[str]()
 
-            def read(name: str, reads: set[str] = reads) -> float:
-                reads.add(name)
+            def read(name: str, asked: set[str] = asked) -> float:
+                asked.add(name)
                 return parameter_of(scene, name)
 
             claim.check_parameters(read)
-            if any(_parts(each) in takers for each in reads):
+            if any(parts_of(each) in takers for each in asked):
                 for row in np.flatnonzero(found):
-                    found[row] = _allows(claim, scene, table, takers, int(row))
+                    found[row] = allows(claim, scene, table, takers, int(row))
         return found
 
-    def _reached(self, takers: Mapping[Variable, int], pruned: Pruned, stepping: "_Stepping") -> set[str]:
+    def _reached(self, takers: Mapping[Variable, int], pruned: Pruned, stepping: Steps) -> set[str]:
         """The instances on which values that differ have an effect."""
         running, wires = pruned.scene.instances, pruned.scene.wires
         if stepping.size is not None:
@@ -287,7 +279,7 @@ class RowsInC:
         scene: Scene,
         columns: Mapping[str, Floats],
         takers: Mapping[Variable, int],
-        stepping: "_Stepping",
+        stepping: Steps,
         fastest: Floats,
     ) -> Mask:
         """The rows whose steps certainly show how the instances move."""
@@ -303,13 +295,13 @@ class RowsInC:
         for name, angles in self._estimates.moved.items():
             known = [speeds[each] for each in angles if each in speeds]
             speed = np.max(known, axis=0) if known else None
-            if not _reads(scene, name, takers):
+            if not reads(scene, name, takers):
                 highest = None if speed is None else float(np.max(speed, initial=0.0))
                 longest, _why = movements.longest_step(scene, name, highest)
                 if np.all(sizes <= TOO_LONG * longest):
                     continue
             for row in np.flatnonzero(found):
-                here = altered(scene, instances={name: _with(scene, name, table, takers, int(row))})
+                here = altered(scene, instances={name: with_row(scene, name, table, takers, int(row))})
                 longest, _why = movements.longest_step(
                     here, name, None if speed is None else float(speed[row])
                 )
@@ -326,8 +318,8 @@ class RowsInC:
                 named = form.signal in self._requested
                 if (
                     named
-                    and self._requested.scene.instances[_parts(form.signal)[0]]
-                    .fmu.ports[_parts(form.signal)[1]]
+                    and self._requested.scene.instances[parts_of(form.signal)[0]]
+                    .fmu.ports[parts_of(form.signal)[1]]
                     .kind
                     == "Integer"
                 ):
@@ -339,121 +331,3 @@ class RowsInC:
                     far = np.abs(worst - bound) > coarse * method.near * scale
                 found[:, number] &= ~(mine & far)
         return found
-
-
-class _Stepping:
-    """The steps of rows: their grid, the sizes if these differ, and the table of all values for C."""
-
-    def __init__(self, scene: Scene, takers: Mapping[Variable, int], columns: Mapping[str, Floats]):
-        self.grid, self.size = uniform(scene), None
-        self.possible = np.ones(len(next(iter(columns.values()))), dtype=bool)
-        self.table, self.column = np.column_stack(list(columns.values())), None
-        if SPEED in takers and scene.step is None:
-            speed = np.abs(self.table[:, takers[SPEED]])
-            self.possible = speed >= SLOWEST
-            with np.errstate(divide="ignore"):
-                self.size = 2.0 * math.pi / (speed * scene.steps_per_period)
-            self.column = self.table.shape[1]
-            self.add(self.size)
-
-    def add(self, values: Any) -> None:
-        """Add a column, or the same number for all rows."""
-        self.table = np.column_stack([self.table, np.broadcast_to(values, len(self.table))])
-
-
-class _Rows:
-    """The questions of rows, and what runs them; `named` are the parameters in each question."""
-
-    def __init__(self, runner: RowRunner, recording: Recording, claims: Sequence[Claim]):
-        self.runner, self.recording = runner, recording
-        times, reals, integers = runner.samples
-        recording.append(times, np.zeros(len(times)), reals, integers)
-        self._run = run_of(recording)
-        asked = [claim.question(recording) for claim in claims]
-        self.forms = [each.forms for each in asked]
-        self.named = [self._run.question(recording, each) for each in asked]
-        self._words = [each.words.encode() for each in asked]
-
-    def judging(self, composed: int | None = None) -> Judging:
-        """The questions for C, with the address of the struct of composed ones."""
-        numbers = [each for each, _named in self.named]
-        asked = list(zip(numbers, self._words, range(len(numbers)), strict=True))
-        return Judging(self._run.rules, asked, self._run.made, len(asked), composed)
-
-    def held(self, judged: Judged, signals: Sequence[str]) -> dict[str, NDArray[Any]]:
-        """The last values of some signals."""
-        found = dict[str, NDArray[Any]]()
-        for signal in signals:
-            channel = self.recording.channel(signal)
-            values = (judged.reals if channel.real else judged.integers)[:, channel.column]
-            found[signal] = values.astype(bool) if channel.boolean else values
-        return found
-
-
-def _numbers(
-    questions: Iterable[tuple[Any, Mapping[int, str]]], takers: Mapping[Variable, int]
-) -> list[Setting]:
-    """Return where questions take parameters that differ from row to row."""
-    return [
-        (ctypes.addressof(numbers) + place * ctypes.sizeof(ctypes.c_double), takers[_parts(name)], 0)
-        for numbers, named in questions
-        for place, name in named.items()
-        if _parts(name) in takers
-    ]
-
-
-def _turned(takers: Mapping[Variable, int], pruned: Pruned) -> dict[Variable, int]:
-    """The takers, with what turns by itself as a shaft would turn it."""
-    found = dict(takers)
-    for name, shaft in pruned.turning.items():
-        for variable in ("speed", "start_angle") if shaft in pruned.shafts else ():
-            found.pop((name, variable), None)
-            if (shaft, variable) in takers:
-                found[name, variable] = takers[shaft, variable]
-    return found
-
-
-def _reads(scene: Scene, name: str, takers: Mapping[Variable, int]) -> bool:
-    """Return whether the longest step of an instance depends on values that differ from row to row."""
-    instance, reads = scene.instances[name], set[str]()
-    component = instance.fmu.component
-    if component is None:
-        return True
-
-    def read(variable: str) -> Any:
-        reads.add(variable)
-        return instance.effect(variable)
-
-    component.shortest_event(read)
-    component.longest_step(read)
-    return any((name, each) in takers for each in reads)
-
-
-def _with(
-    scene: Scene, name: str, table: Sequence[Floats], takers: Mapping[Variable, int], row: int
-) -> Instance:
-    """An instance with the values of a row."""
-    instance = scene.instances[name]
-    own = {variable: float(table[place][row]) for (owner, variable), place in takers.items() if owner == name}
-    return altered(instance, values=instance.values | own)
-
-
-def _allows(
-    claim: Claim, scene: Scene, table: Sequence[Floats], takers: Mapping[Variable, int], row: int
-) -> bool:
-    """Return whether a claim refuses no parameter of a row."""
-
-    def read(name: str) -> float:
-        place = takers.get(_parts(name))
-        return parameter_of(scene, name) if place is None else float(table[place][row])
-
-    try:
-        claim.check_parameters(read)
-    except LoomfmuError:
-        return False
-    return True
-
-
-def _parts(signal: str) -> Variable:
-    instance, _, variable = signal.partition(".")
-    return instance, variable
