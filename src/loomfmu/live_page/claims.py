@@ -37,8 +37,15 @@ def claims(
     number_of(table, trace, SHAFT_ANGLE)
     dependence = Dependence(requested, requested.claims)
     unshown = [dependence.unshown(each) for each in ends]
-    asked = zip(requested.claims, dependence.methods, verdicts, strict=True)
-    rated = Composed(requested, requested.claims).unrated
+    composed = Composed(requested, requested.claims)
+    sampled = [
+        _on_samples(claim, method, verdict, trace) if number in composed.claims else verdict
+        for number, (claim, method, verdict) in enumerate(
+            zip(requested.claims, dependence.methods, verdicts, strict=True)
+        )
+    ]
+    asked = zip(requested.claims, dependence.methods, sampled, strict=True)
+    rated = composed.unrated
     rows = [
         _claim(claim, method, verdict, trace, table, _not_live(claim, rated & {*claim.signals(requested)}))
         | {"unshown": next((each[number] for each in unshown if number in each), "")}
@@ -56,6 +63,15 @@ def rules() -> bytes:
     """The rules as a module of WebAssembly. Raises LoomfmuError if it cannot be built."""
     source = standard().RULES
     return module_of(source.name, code_of(source))
+
+
+def _on_samples(claim: Claim, method: Method, verdict: Verdict, trace: Trace) -> Verdict:
+    """Return what the samples tell, as in a page, of a claim that the run judged by more than these."""
+    found = claim.judge(trace)
+    spread = method.factors[0] * abs(found.worst - verdict.worst)
+    if not math.isfinite(spread):
+        return found
+    return claim.settled(trace, found, spread, method.floor, method.scatter, claim.noise)
 
 
 def _not_live(claim: Claim, rated: Collection[str]) -> str:
