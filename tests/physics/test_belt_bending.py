@@ -11,7 +11,7 @@ from loomfmu.physics.belt_bending import bent_belt
 from loomfmu.physics.belt_ends import end_shape
 from loomfmu.physics.belt_modes import Bow
 from loomfmu.physics.belt_motion import accelerations, ends_at, energy_and_powers
-from loomfmu.physics.belt_moving import Belt, instant
+from loomfmu.physics.belt_moving import Belt, Board, instant
 from loomfmu.physics.belt_steps import MOST_STEPS, pieces
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(100)
@@ -47,6 +47,7 @@ def belt(clamped, **given):
         "clearance": 1e-3,
         "leaning": True,
         "guided": clamped >= 2,
+        "board": Board(-1.0, 2e-3, 1e5),
         "modes": 6,
     }
     return Belt(**{**by_default, **given}), clamped % 2

@@ -6,7 +6,7 @@ from math import fabs, inf, sqrt
 from typing import ClassVar
 
 from ..declaring.arrays import array
-from ..declaring.declarations import at_step_end, auxiliary, input_, output, parameter, state
+from ..declaring.declarations import Quantity, at_step_end, auxiliary, input_, output, parameter, state
 from ..declaring.variables import Component, Problem, Terminal
 from ..physics.belt import LARGEST_BEND
 from ..physics.belt_bending import LEAST_SQUARE, bent_belt
@@ -16,6 +16,7 @@ from ..physics.belt_modes import Bow
 from ..physics.belt_motion import accelerations, ends_at, energy_at
 from ..physics.belt_moving import (
     Belt,
+    Board,
     Instant,
     Path,
     crossing,
@@ -55,6 +56,8 @@ ERROR, MARGIN_ERROR = "deflection_error", "margin_error"  # and how far they may
 
 CALIBRATED = 1  # guide: pinned, with a stiffness that makes up for it
 GUIDED = 2  # head: it cannot turn
+NO_BOARD = 1
+SIDES = (0.0, 1.0, -1.0)  # of the race board, by the choices of `board`
 JUMP = 1e-6  # m, that a standing head may be off
 MOST_SWEEPS = 10000  # over the stages of the integration in one step; both strokes of a loom need fewer
 MOST_HALVINGS = 13
@@ -62,12 +65,17 @@ SHORTEST_SHARE = 5e-3  # of an integration step: it goes that far at least, howe
 BALANCED = 2.5e-10  # of the energy: what an integration step may leave unexplained, if it can be halved
 UNBALANCED = 1e-6  # of the energy: a step that leaves more, however short, cannot be followed
 EASY = 1e-3  # of that: then the next step may be twice as long
+BALANCED_ON_BOARD = 1e-6  # as these three where a board pushes back, whose force has a kink: not of order 6
+UNBALANCED_ON_BOARD = 1e-2
+MOST_ON_BOARD = 4  # halvings for the sake of the energy: they bound the work of a step
+EASY_ON_BOARD = 3e-2
 LEAST_ENERGY = 1e-15  # J: below, rounding and not the step is at fault
 STEEPEST = sqrt(1.0 - 2.0 * LEAST_SQUARE)  # sine of the slope at which the belt counts as folded: 72 degrees
 MOST_WAVES = 5.0  # half waves of its own bow that a free belt may have: six modes cannot follow more
 LEFT = 2.5e-4  # of the largest deflection: what six modes and the integration leave under the push
 MORE_LEFT = 1e-2  # later, when the belt swings on and comes back, or where an end may be clamped
 MOST_LEFT = 3e-2  # where both may be: under a load that lasts beyond Euler's
+LEFT_ON_BOARD = 0.1  # against a rigid board: by the cover, the places that are looked at, the modes
 UNKNOWN_LEFT = 100.0  # with fewer than six modes, of which one gives an eighth of the deflection of six
 SHORTEST_STEP = 1e-100  # [s]: nothing moves in less, whose square is no number any more
 
@@ -92,6 +100,10 @@ class BeltDynamics(Component):
             warning=True,
         ),
         Problem("guide_clearance = {guide_clearance} must be less than guide_length = {guide_length}"),
+        Problem(
+            "the guide's exit, guide_offset = {guide_offset}, lies beyond the race board, which is at"
+            " board_distance = {board_distance} on that side"
+        ),
     )
     terminals: ClassVar[tuple[Terminal, ...]] = (HEAD.of("travel", "velocity", "acceleration"),)
     accuracy: ClassVar[str] = "deflections to 2.5e-4 to 3e-2 of the largest, by its modes and its integration"
@@ -185,12 +197,33 @@ class BeltDynamics(Component):
     shortest_length: float = parameter(
         RADIUS, 0.02, "Free length below which the belt is taken as straight (assumed)"
     )
+    board: int = parameter(
+        "1",
+        1,
+        "Race board along the free belt: none, on the side of its bow at the head, or on the other side",
+        choices=("none", "bow", "other"),
+    )
+    board_distance: float = parameter(
+        LENGTH.within(0.0, 1.0, nominal=1e-3),
+        0.0,
+        "Distance of the race board from the head's line (assumed)",
+    )
+    board_stiffness: float = parameter(
+        Quantity("Pa", "MPa").within(1e3, 1e8, nominal=1e6),
+        1e7,
+        "Stiffness of the race board's cover, for each length of belt (assumed: nearly rigid)",
+    )
     modes: int = parameter(
         "1",
         6,
         "Number of modes that move; the others are held at 0, and the end shape stays that of six",
         minimum=1,
         maximum=6,
+    )
+    only_push: bool = parameter(
+        "1",
+        False,
+        "The belt is followed until the push on its head is over, as it is on a race board in any case",
     )
     inputs_at_step_end: bool = at_step_end()
     travel: float = head_travel()
@@ -228,7 +261,8 @@ class BeltDynamics(Component):
     )
     largest_deflection: float = output(
         LENGTH,
-        "Largest deflection so far, at free lengths up to 5 times bow_length if the belt has the bow",
+        "Largest deflection so far, at free lengths up to 5 times bow_length if the belt has the bow; under"
+        " the push alone with only_push or a race board",
         nominal=5e-3,
         highest_of="deflection",
         valid_if=FOLLOWED,
@@ -246,7 +280,7 @@ class BeltDynamics(Component):
         LENGTH,
         "How far deflections may be off with any steps, by modes and integration: 1e-2 of the largest so"
         " far, 2.5e-4 while the head is pushed outwards and no end may be clamped, 3e-2 where both may be;"
-        " 100 times the largest with fewer than six modes",
+        " 0.1 on a race board; 100 times the largest with fewer than six modes",
         nominal=1e-5,
     )
     margin: float = output(
@@ -307,9 +341,18 @@ class BeltDynamics(Component):
         so_far=True,
     )
 
+    let_go: bool = output(
+        "1",
+        "A belt that is followed under the push alone, see only_push, was let go: largest_deflection does not"
+        " count what came then",
+        start=False,
+        so_far=True,
+    )
+
     outside: bool = state("1", "The free length is above the shortest one", start=False)
     held: bool = state("1", "The belt is held until it is back in its guide", start=False)
     lost: bool = state("1", "It is held because its motion could not be followed", start=False)
+    released: bool = state("1", "It is held because its push is over", start=False)
     mode: Sequence[float] = array(state("m", f"Amplitude of the {each} mode") for each in NUMBERS)
     mode_rate: Sequence[float] = array(state("m/s", f"Rate of the {each} mode") for each in NUMBERS)
     guide_shape: float = auxiliary("m", "Amplitude of the end shape at the guide")
@@ -333,9 +376,12 @@ class BeltDynamics(Component):
         """Let the belt rest in equilibrium and forget all extremes and work."""
         if self.guide_end != CALIBRATED and self.guide_clearance >= self.guide_length:
             return 3
+        if SIDES[self.board - 1] * self.guide_offset > self.board_distance:
+            return 4
         self.folded = False
         self.followed = True
         self.too_long = False
+        self.let_go = False
         self.largest_deflection = 0.0
         self.largest_at_risk = 0.0
         self.lowest_margin = 1.0
@@ -388,6 +434,7 @@ class BeltDynamics(Component):
     def given(self) -> Belt:
         """The belt as it is now."""
         factor = self.length_factor if self.guide_end == CALIBRATED else 1.0
+        side = SIDES[self.board - 1]
         return Belt(
             self.head_mass,
             self.belt_mass,
@@ -400,6 +447,7 @@ class BeltDynamics(Component):
             self.guide_clearance,
             self.guide_end != CALIBRATED,
             self.head_end == GUIDED,
+            Board(side, self.board_distance, self.board_stiffness),
             self.modes,
         )
 
@@ -451,6 +499,7 @@ class BeltDynamics(Component):
         self.outside = False
         self.held = False
         self.lost = False
+        self.released = False
         self.mode = [0.0] * 6
         self.guide_shape = 0.0
         self.head_shape = 0.0
@@ -536,6 +585,11 @@ class BeltDynamics(Component):
         halvings = self.halvings if self.halvings < MOST_HALVINGS else MOST_HALVINGS
         reach = 1.0
         sweeps = 0
+        on_board = self.board != NO_BOARD
+        balanced = BALANCED_ON_BOARD if on_board else BALANCED
+        unbalanced = UNBALANCED_ON_BOARD if on_board else UNBALANCED
+        most = MOST_ON_BOARD if on_board else MOST_HALVINGS
+        easy = EASY_ON_BOARD if on_board else EASY
         while end - share > 1e-12 and halvings <= MOST_HALVINGS and sweeps < MOST_SWEEPS:
             taken = suited(path, share, end, size) / 2.0**halvings
             taken = taken if taken < reach else reach
@@ -564,12 +618,12 @@ class BeltDynamics(Component):
             energy = energy_at(belt, after, self.guide_contact, next_q, next_v)
             missing = energy - self.energy - work[0] - work[1] + work[2]
             error = fabs(missing) / (fabs(energy) + fabs(self.energy) + work[3] + LEAST_ENERGY)
-            if error > BALANCED and halvings < MOST_HALVINGS:
+            if error > balanced and halvings < most:
                 halvings = halvings + 1
                 continue
-            if error > UNBALANCED:
+            if error > unbalanced:
                 break
-            if error < EASY * BALANCED and halvings > 0:
+            if error < easy * balanced and halvings > 0:
                 halvings = halvings - 1
             share = share + taken
             reach = 1.0
@@ -592,9 +646,13 @@ class BeltDynamics(Component):
             self.mode = q
             self.mode_rate = v
             last, last_rate = self.look(belt, at, q, v)
-            load = self.take_extremes(belt, at, stages.duration, last, last_rate, load)
+            load_before = load
+            load = self.take_extremes(belt, at, stages.duration, last, last_rate, load_before)
             if not self.steepness < STEEPEST:
                 self.fold(belt, at)
+                return
+            if load <= 0.0 and load_before > 0.0 and self.lets_go():
+                self.let_it_go()
                 return
         self.gauss = a
         self.halvings = halvings
@@ -645,9 +703,6 @@ class BeltDynamics(Component):
             return load
         value = self.deflection
         rate = self.deflection_rate
-        self.largest_deflection = highest_so_far(
-            self.largest_deflection, duration, last, last_rate, value, rate
-        )
         part = 1.0
         if load <= 0.0 and load_before > 0.0:
             part = load_before / (load_before - load)
@@ -656,7 +711,24 @@ class BeltDynamics(Component):
             self.largest_at_risk = highest_so_far(
                 self.largest_at_risk, part * duration, last, last_rate, value, rate
             )
+        if not self.lets_go():
+            part, value, rate = 1.0, self.deflection, self.deflection_rate
+        self.largest_deflection = highest_so_far(
+            self.largest_deflection, part * duration, last, last_rate, value, rate
+        )
         return load
+
+    def lets_go(self) -> bool:
+        """Return whether the belt is followed while its head is pushed alone."""
+        return self.only_push or self.board != NO_BOARD
+
+    def let_it_go(self) -> None:
+        """Hold the belt, as if it were straight, from the end of the push until it is back in its guide."""
+        self.go_in()
+        self.outside = True
+        self.held = True
+        self.released = True
+        self.let_go = True
 
     def follows(self, length: float) -> bool:
         """Return whether six modes can follow the bow of a belt of that free length."""
@@ -671,12 +743,14 @@ class BeltDynamics(Component):
         if self.outside and not self.held:
             at = instant(belt, length, velocity, acceleration, tension)
             self.show_motion(belt, at)
-        self.deflection_known = not self.lost and (not self.outside or self.follows(self.free_length))
+        self.deflection_known = (
+            not self.lost and not self.released and (not self.outside or self.follows(self.free_length))
+        )
         self.deflection_error = self.left(may_clamp(belt)) * self.largest_deflection
         self.margin_error = self.deflection_error / self.allowed_deflection
         self.margin = 1.0 - self.deflection / self.allowed_deflection
         self.lowest_margin = 1.0 - self.largest_deflection / self.allowed_deflection
-        if self.held:
+        if self.held and not self.released:
             return 2 if self.lost else 1
         return 0
 
@@ -701,6 +775,8 @@ class BeltDynamics(Component):
         """Share of the largest deflection by which deflections may be off with any steps."""
         if self.modes < 6:
             return UNKNOWN_LEFT
+        if self.board != NO_BOARD:
+            return LEFT_ON_BOARD
         if self.guide_end != CALIBRATED and self.head_end == GUIDED:
             return MOST_LEFT
         pushed_out = self.compression > 0.0 and self.velocity > 0.0

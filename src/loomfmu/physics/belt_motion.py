@@ -15,6 +15,7 @@ for rotations up to 77 degrees; the belt's own axial inertia counts to the secon
 from math import pi
 
 from .belt_bending import bent_belt
+from .belt_board import board_forces
 from .belt_end_forces import end_coupling
 from .belt_ends import Ends, end_bending, end_motion, moment_forces, turning
 from .belt_modes import carried_along, dot, first_modes, summed, weighed
@@ -67,6 +68,9 @@ def accelerations(
     coupled = end_coupling(belt, at, ends, thrown, q, v)
     held = moment_forces(moment * ends.guide_excess, moment * ends.head_excess)
     e = summed(1.0, held, coupled)
+    if belt.board.side != 0.0:
+        pressed, _energy = board_forces(belt, length, q)
+        e = summed(1.0, pressed, e)
     u = [
         (
             twice * y[n]
@@ -131,6 +135,10 @@ def energy_and_powers(
     drag = belt.damping * (share * spread - drift)
     guide = velocity * (belt.mass * inertia + elastic - load * bending.by_length + drag)
     guide = guide + dot(v, coupled)
+    if belt.board.side != 0.0:
+        _forces, pressed = board_forces(belt, at.length, q)
+        energy = energy + pressed
+        guide = guide + share * pressed
     return energy, push, guide, 2.0 * belt.damping * moving
 
 

@@ -15,6 +15,18 @@ from .numerics.motion import joined_rate, joined_value
 
 
 @dataclass(frozen=True)
+class Board:
+    """Race board on the side of the bow (1) or on the other one (-1); 0 if there is none.
+
+    Its distance from the head's line [m], and the stiffness of its cover for each length of belt [N/m2].
+    """
+
+    side: float
+    distance: float
+    stiffness: float
+
+
+@dataclass(frozen=True)
 class Belt:
     """A rapier belt between guide and head, and how these hold it.
 
@@ -35,6 +47,7 @@ class Belt:
     clearance: float
     leaning: bool
     guided: bool
+    board: Board
     modes: int
 
 

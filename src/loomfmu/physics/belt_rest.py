@@ -2,13 +2,16 @@
 
 from math import fabs, pi
 
-from .belt_ends import at_ends, reactions
+from .belt_board import board_matrix
+from .belt_ends import at_ends, end_slopes, moment_forces, reactions, turned_by
 from .belt_guide import lag, leans_on
 from .belt_modes import dot, first_modes, size, summed
 from .belt_motion import accelerations
 from .belt_moving import Belt, Instant, instant
+from .numerics.elimination import eliminated
 
 REPEATS = 200  # until the belt is in equilibrium
+WHOLE = 20  # of them, on a board: then they go half as far
 RESTED = 1e-9  # of the modes: what the last repeat may change
 AT_REST = 1e-11  # of the accelerations by bending: what rounding leaves of them in equilibrium
 
@@ -38,7 +41,7 @@ def rest(
     if load + thrown > 0.8 * pi * pi * belt.stiffness / (length * length):
         return at_rest, contact
     at = instant(belt, length, velocity, acceleration, tension)
-    for _ in range(REPEATS):
+    for repeat in range(REPEATS):
         if at_rest:
             return at_rest, contact
         contact = leans_on(belt, at, q, v)
@@ -55,11 +58,17 @@ def rest(
         pulls, _rate = lag(belt, at, contact, q, v)
         freed = 2.0 * belt.head_mass / (belt.mass * length) * dot(pulls, found)
         found = summed(freed, pulls, found)
-        if clamped:
-            held = moments_of_ends(belt, length, load, contact, found)
-            found = first_modes(belt.modes, held)
-        for n in range(6):
-            q[n] = q[n] + yielded(belt, length, load, n, found[n])
+        if belt.board.side != 0.0:
+            change = yielded_on_board(belt, length, load, contact, q, found)
+            part = 1.0 if repeat < WHOLE else 0.5  # places that touch by turns
+            for n in range(6):
+                q[n] = q[n] + part * change[n]
+        else:
+            if clamped:
+                held = moments_of_ends(belt, length, load, contact, found)
+                found = first_modes(belt.modes, held)
+            for n in range(6):
+                q[n] = q[n] + yielded(belt, length, load, n, found[n])
         if not size(q) < length:
             for n in range(6):
                 q[n] = 0.0
@@ -74,6 +83,30 @@ def yielded(belt: Belt, length: float, load: float, place: int, acceleration: fl
     wave = (place + 1) * pi / length
     stiff = wave * wave * (belt.stiffness * wave * wave - load)
     return belt.mass * acceleration / stiff
+
+
+def yielded_on_board(
+    belt: Belt, length: float, load: float, contact: int, q: list[float], found: list[float]
+) -> list[float]:
+    """As `yielded`, of all modes at once, which a board and clamped ends tie to each other."""
+    clamped = (1 if contact != 0 else 0) + (2 if belt.guided else 0)
+    moment = 6.0 * belt.stiffness / (length * length * length)
+    half = 0.5 * belt.mass * length
+    stiff = board_matrix(belt, length, q)
+    for column in range(6):
+        mode = [1.0 if n == column else 0.0 for n in range(6)]
+        guide, head = end_slopes(mode)
+        guide_excess, head_excess = turned_by(clamped, -guide, -head)
+        ends = moment_forces(moment * guide_excess, moment * head_excess)
+        for row in range(6):
+            stiff[6 * row + column] = stiff[6 * row + column] - ends[row]
+    for row in range(6):
+        stiff[7 * row] = stiff[7 * row] + half / yielded(belt, length, load, row, 1.0)
+        for column in range(6):
+            if row != column and (row >= belt.modes or column >= belt.modes):
+                stiff[6 * row + column] = 0.0
+    forces = [half * found[n] for n in range(6)]
+    return eliminated(stiff, forces)
 
 
 def lengthened(at: Instant, clamped: bool, place: int) -> float:
