@@ -2,7 +2,10 @@
 
 import math
 from functools import cache
+from itertools import pairwise
 from typing import Any, NamedTuple
+
+from scipy.optimize import brentq
 
 from loomfmu.components import BeltDynamics
 from loomfmu.cosim.prepared import Prepared
@@ -16,6 +19,7 @@ BOWS = ("belt", "span")  # what has the bow
 USUAL = (0.05, 0.3e-3)  # belt mass [kg/m] and bow [m]
 MASSES = (0.04, 0.065)  # kg/m, a third of the published section punched out, and all of it there
 CORNERS = tuple((mass, bow) for mass in MASSES for bow in (0.05e-3, 0.5e-3))
+SHARES = tuple(0.1 * tenth for tenth in range(5, 21))  # of the static limit
 STEPS = 360
 GRAVITY = 9.80665  # m/s2
 ALLOWED = 2e-3  # m, section 4.2 of the source
@@ -99,6 +103,28 @@ def sagging() -> float:
     stiffness = BeltDynamics().bending_stiffness / BeltDynamics().length_factor ** 2
     weight = USUAL[0] * GRAVITY
     return float((384.0 * stiffness * ALLOWED / (5.0 * weight)) ** 0.25)
+
+
+def allowed(machine: str, bow_of: str, **ends: float | str) -> str:
+    """Say at which shares of the static limit the deflection under the push is what is allowed or less."""
+
+    def excess(share: float) -> float:
+        return pushed(machine, share, bow_of, **ends) - ALLOWED
+
+    parts: list[str] = []
+    start = SHARES[0] if excess(SHARES[0]) <= 0.0 else None
+    for low, high in pairwise(SHARES):
+        if (excess(low) <= 0.0) == (excess(high) <= 0.0):
+            continue
+        edge = float(brentq(excess, low, high, xtol=2e-3))
+        if start is None:
+            start = edge
+            continue
+        parts.append(f"to {edge:.2f}" if start == SHARES[0] else f"{start:.2f} to {edge:.2f}")
+        start = None
+    if start is not None:
+        parts.append("all" if start == SHARES[0] else f"from {start:.2f}")
+    return ", ".join(parts) or "none"
 
 
 def worth(machine: str, bow_of: str, share: float) -> str:
