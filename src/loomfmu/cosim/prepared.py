@@ -107,8 +107,14 @@ class Pattern:
     def _in_memory(self, scene: Scene, grid: Grid) -> InMemory:
         return self.stepping(self.judged).in_memory(scene, grid)
 
+    @cached_property
+    def _estimating(self) -> Stepping:
+        """The stepping of what claims need whose errors coarser steps show."""
+        needed = self._requested.needed([self._all[number] for number in self._by_steps], ())
+        return self.stepping(list(dict.fromkeys([*needed, *self._estimates.shown])))
+
     def _on(self, scene: Scene, grid: Grid) -> Signals:
-        return self._in_memory(scene, grid).recording
+        return self._estimating.in_memory(scene, grid).recording
 
     def _judged(self, trace: Signals) -> tuple[Verdict, ...]:
         return tuple(claim.judge(trace) for claim in self._all)
@@ -191,7 +197,7 @@ class Pattern:
         return choice
 
     def _tried(self, scene: Scene) -> tuple[Signals, Sequence[Verdict]]:
-        trace = self._on(scene, uniform(scene))
+        trace = self._in_memory(scene, uniform(scene)).recording
         return trace, self._verdicts(scene, trace)
 
     def _coarser(self, scene: Scene, grid: Grid) -> Coarser:
