@@ -131,6 +131,17 @@ def test_a_stiff_one_is_solved(tmp_path: Path) -> None:
     np.testing.assert_allclose(trace["it.h"], found.y[0], rtol=0, atol=1e-7)  # 200 steps of 1e-9, damped
 
 
+def test_errors_do_not_add_up_from_step_to_step(tmp_path: Path) -> None:
+    trace = solved(exchanged(tmp_path, "OSCILLATOR"), "tolerance = 1e-6\np = 1.0\n", duration="10 s").trace
+
+    def rates(_time: float, x: np.ndarray) -> list[float]:
+        return [x[1], (1.0 - x[0] ** 2) * x[1] - x[0]]
+
+    found = solve_ivp(rates, (0, 10), [2.0, 0.0], "DOP853", rtol=1e-12, atol=1e-12, t_eval=trace.time)
+    # 1000 steps; the oscillator magnifies what one of them is off by tenfold at most
+    np.testing.assert_allclose(trace["it.h"], found.y[0], rtol=0, atol=1e-5)
+
+
 @pytest.mark.skipif(find_spec("ziglang") is None, reason="ziglang is not installed: no native FMU")
 @pytest.mark.parametrize("fmi", [2, 3])
 @pytest.mark.parametrize("name", ["DobbyDrive", "DetachingRoller"])

@@ -1,7 +1,8 @@
 """FMUs for model exchange, which are solved here from one communication point to the next.
 
 At each communication point the FMU is in event mode: there its inputs may jump. The solver, scipy's LSODA,
-which switches between methods for stiff systems and others, begins anew at each, and after each event.
+which switches between methods for stiff systems and others, begins anew at each, and after each event. Its
+errors add up, so each stretch has its share of the tolerance: by how long it is, of the whole run.
 """
 
 import ctypes
@@ -56,6 +57,7 @@ class Solved(Slave):
                 " for an FMU for model exchange"
             )
         self._at, self._next = start_time, math.inf
+        self._duration = stop_time - start_time
         self._failing = ""
         self._ended_at: float | None = None
         super().start(values, stop_time, start_time)
@@ -168,9 +170,11 @@ class Solved(Slave):
     def _solver(self, end: float) -> Any:
         """The solver from here to a time; one without states has one that stays 0."""
         nominals = np.abs(self._nominals.values) if len(self._states.values) else np.ones(1)
-        absolute = self._tolerance_used * np.where(nominals > 0.0, nominals, 1.0)
+        share = (end - self._at) / self._duration if self._duration > 0.0 else 1.0
+        tolerance = max(self._tolerance_used * min(share, 1.0), LEAST_TOLERANCE)
+        absolute = tolerance * np.where(nominals > 0.0, nominals, 1.0)
         states = self._states.values.copy() if len(self._states.values) else np.zeros(1)
-        return LSODA(self._slopes, self._at, states, end, rtol=self._tolerance_used, atol=absolute)
+        return LSODA(self._slopes, self._at, states, end, rtol=tolerance, atol=absolute)
 
     def _go(self, time: float, states: Floats) -> None:
         """Be at a time with these states."""
