@@ -336,7 +336,7 @@ def test_a_belt_that_cannot_be_followed_has_not_folded_and_its_claim_is_undecide
     dynamic = run("sims/belt_motion.toml", output=tmp_path / "run.h5", set=SLOW).claims[1]
     assert (dynamic.holds, dynamic.decided) == (False, False)
     assert math.isnan(dynamic.worst)
-    assert "belt_motion.followed is false" in dynamic.note
+    assert "belt_motion.largest_known is false" in dynamic.note
     trace = Trace(tmp_path / "run.h5")
     assert not trace["belt_motion.followed"][-1]
     assert not trace["belt_motion.folded"][-1]

@@ -51,7 +51,11 @@ from .shared_declarations import head_acceleration, head_travel, head_velocity, 
 from .terminals import HEAD
 
 NUMBERS = ("first", "second", "third", "fourth", "fifth", "sixth")
-KNOWN, FOLLOWED = "deflection_known", "followed"  # what says when other outputs are known
+KNOWN, FOLLOWED, LARGEST = (
+    "deflection_known",
+    "followed",
+    "largest_known",
+)  # what says when other outputs are known
 ERROR, MARGIN_ERROR = "deflection_error", "margin_error"  # and how far they may be off
 
 CALIBRATED = 1  # guide: pinned, with a stiffness that makes up for it
@@ -261,16 +265,15 @@ class BeltDynamics(Component):
     )
     largest_deflection: float = output(
         LENGTH,
-        "Largest deflection so far, at free lengths up to 5 times bow_length if the belt has the bow; under"
-        " the push alone with only_push or a race board",
+        "Largest deflection so far, at free lengths up to 5 times bow_length if the belt has the bow",
         nominal=5e-3,
         highest_of="deflection",
-        valid_if=FOLLOWED,
+        valid_if=LARGEST,
         error=ERROR,
     )
     largest_at_risk: float = output(
         LENGTH,
-        "That of largest_deflection while the head was pushed",
+        "That of largest_deflection while the head was pushed; on its way in alone with only_push or a board",
         nominal=5e-3,
         valid_if=FOLLOWED,
         error=ERROR,
@@ -287,7 +290,7 @@ class BeltDynamics(Component):
         "1", "Dynamic margin, 1 - deflection / allowed_deflection", valid_if=KNOWN, error=MARGIN_ERROR
     )
     lowest_margin: float = output(
-        "1", "Dynamic margin of largest_deflection", lowest_of="margin", valid_if=FOLLOWED, error=MARGIN_ERROR
+        "1", "Dynamic margin of largest_deflection", lowest_of="margin", valid_if=LARGEST, error=MARGIN_ERROR
     )
     margin_error: float = output(
         "1", "How far margins may be off, deflection_error / allowed_deflection", nominal=1e-2
@@ -341,11 +344,11 @@ class BeltDynamics(Component):
         so_far=True,
     )
 
-    let_go: bool = output(
+    largest_known: bool = output(
         "1",
-        "A belt that is followed under the push alone, see only_push, was let go: largest_deflection does not"
-        " count what came then",
-        start=False,
+        "The largest deflection is known: the belt's motion could always be followed, and it was not let go"
+        " after a push, see only_push",
+        start=True,
         so_far=True,
     )
 
@@ -381,7 +384,7 @@ class BeltDynamics(Component):
         self.folded = False
         self.followed = True
         self.too_long = False
-        self.let_go = False
+        self.largest_known = True
         self.largest_deflection = 0.0
         self.largest_at_risk = 0.0
         self.lowest_margin = 1.0
@@ -552,6 +555,7 @@ class BeltDynamics(Component):
         self.held = True
         self.lost = True
         self.followed = False
+        self.largest_known = False
 
     def fold(self, belt: Belt, at: Instant) -> None:
         """Hold the belt as it folded: it counts as bent as far as a belt of its length can be."""
@@ -728,7 +732,7 @@ class BeltDynamics(Component):
         self.outside = True
         self.held = True
         self.released = True
-        self.let_go = True
+        self.largest_known = False
 
     def follows(self, length: float) -> bool:
         """Return whether six modes can follow the bow of a belt of that free length."""

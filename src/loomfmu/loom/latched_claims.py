@@ -43,12 +43,11 @@ class BeltDeflection(Claim):
         "belt.largest_at_risk",
         "belt.folded",
         "belt.too_long",
-        "belt.let_go",
     )
     sense, unit = AT_MOST, LENGTH
 
     def question(self, trace: Signals) -> Question:
-        names = ("largest_deflection", "deflection", "largest_at_risk", "folded", "too_long", "let_go")
+        names = ("largest_deflection", "deflection", "largest_at_risk", "folded", "too_long")
         signals = [f"{self.belt}.{name}" for name in names]
         form = self.form("largest deflection", signals[0])
         return Question("deflection", [form], signals, [self.at_most, NEGATIVE])

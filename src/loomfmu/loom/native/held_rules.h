@@ -14,8 +14,6 @@ static void judge_deflection(struct run *run, const struct call *call, struct an
     note(run, answer, last_of(run, signal_of(call, 3)) != 0.0 ? "the belt folded" : "", PLAIN);
     if (last_of(run, signal_of(call, 4)) != 0.0)
         note(run, answer, "free lengths above 5 times bow_length do not count", PLAIN);
-    if (last_of(run, signal_of(call, 5)) != 0.0)
-        note(run, answer, "what came after the push does not count", PLAIN);
 }
 
 /* The first sample that has the final value of a signal. */
