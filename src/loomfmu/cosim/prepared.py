@@ -147,9 +147,9 @@ class Pattern:
         verdicts = self._judged(run)
         near = self._estimates.near(scene, run, verdicts)
         wanted = {"all": {*range(len(verdicts))}, "near": near, "none": set[int]()}[errors]
-        # steps that an accuracy chose are too few for any other way
-        every = scene.accuracy is not None
-        exact = {n for n, each in enumerate(verdicts) if n in wanted or every or not each.decided}
+        # only rows of which few are near a bound do with less, and not on the steps that an accuracy chose
+        every = scene.accuracy is not None or errors != "near"
+        exact = {n for n, each in enumerate(verdicts) if every or n in near or not each.decided}
         verdicts = self._exact(scene, run, verdicts, exact)
         coarser = known or self._estimates.coarser(scene, grid, wanted.intersection(self._by_steps))
         verdicts = self._estimates.of(scene, run, verdicts, coarser)

@@ -130,8 +130,8 @@ class RowsInC:
     def run(self, columns: Mapping[str, Floats], scene: Scene, held: Sequence[str], near: bool) -> Ran | None:
         """Run and judge rows, with the values of each key; None where all are to be run one by one.
 
-        `scene` is that of one of the rows, `held` are signals to keep the last values of. With `near`, the
-        errors of verdicts near their bounds are wanted.
+        `scene` is that of one of the rows, `held` are signals to keep the last values of. With `near`
+        only verdicts near their bounds are those of the mechanisms' own functions.
         """
         takers = self._takers(list(columns), scene.overrides)
         possible = self._possible(columns, takers)
@@ -153,7 +153,7 @@ class RowsInC:
                 rows.runner.prepare(rows.judging(), varied, self._angles)
                 judged = rows.runner.run(stepping.table, possible)
                 close = self._near(scene, rows.forms, judged.verdicts)
-                exact = self._exact(judged, close & near)
+                exact = self._exact(judged, close | (not near))
                 judged = self._composed_too(scene, rows, varied, takers, stepping, judged, exact)
         except Interrupted:
             raise KeyboardInterrupt("interrupted") from None
