@@ -205,6 +205,20 @@ def lowest_push() -> float:
     raise AssertionError("the head is never pulled")
 
 
+def test_a_window_may_begin_where_the_run_does() -> None:
+    scene = read(claim("below", signal="weft.travel", bound="5 m", window=["0 deg", "30 deg"]))
+    (verdict,) = evaluate(scene, set={"revolutions": 0.5}).claims
+    assert verdict.holds
+
+
+def test_inputs_of_the_start_of_a_step_depend_on_the_steps() -> None:
+    with loomfmu.prepare(DEMO) as loom:
+        late = loom.evaluate({"weft.inputs_at_step_end": False}).claims[0]
+        exact = loom.evaluate().claims[0]
+    assert late.holds and exact.error < 1e-10 < late.error < 1e-6
+    assert abs(late.worst - exact.worst) <= late.error
+
+
 @pytest.mark.parametrize("window", [["80.3 deg", "95.2 deg"], ["95.2 deg", "80.3 deg"]])
 def test_the_edges_of_a_window_are_those_of_the_shaft(window: list[str]) -> None:
     """The head is on its way there, so that the worst values lie at an edge."""

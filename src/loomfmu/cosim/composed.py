@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ..components import COMPONENTS
 from ..declaring.upstream import sources_of, upstream
-from ..declaring.variables import MOTION, NOTHING
+from ..declaring.variables import AT_STEP_END, MOTION, NOTHING
 from ..errors import LoomfmuError
 from ..fmi.native.libraries import needed_library
 from ..traces import Recording, Signals, Verdict
@@ -118,7 +118,7 @@ class Composed:
         components = [scene.instances[name].fmu.component for name in needed]
         if not all(each and COMPONENTS.owns(each) and each.keeps != MOTION for each in components):
             return False
-        if any(each.instance in needed for each in scene.drives) or needed & self._looped:
+        if any(each.instance in needed for each in scene.drives) or needed & (self._looped | self._late):
             return False
         sources = [".".join(wire.source) for wire in scene.wires if wire.sink[0] in needed]
         whole = getattr(claim, "window", None) is None
@@ -136,6 +136,15 @@ class Composed:
         """The instances that take values of the step before."""
         _order, lagged = step_order(self._scene.instances, self._scene.wires)
         return {wire.sink[0] for wire in lagged}
+
+    @cached_property
+    def _late(self) -> set[str]:
+        """The instances whose inputs are those of the start of each step."""
+        return {
+            name
+            for name, each in self._scene.instances.items()
+            if AT_STEP_END in each.fmu.ports and not each.start(AT_STEP_END)
+        }
 
     def _variable(self, signal: str) -> Any:
         instance, _, variable = signal.partition(".")
@@ -230,12 +239,13 @@ class Composed:
         return found
 
     def _at(self, scene: Scene, times: Floats) -> "Jets":
-        """Return all signals at some times, in order."""
+        """Return all signals at some times, in order, and at the start where any is later."""
         assert self._tangents is not None
         points = np.concatenate([[0.0], times[times > 0.0]])
-        found = self._tangents.rates(scene, grid_of_points(scene, points)) if len(points) > 1 else {}
-        rows = [np.stack(found[name], axis=1) for name in self._signals] if found else []
-        return Jets(points, np.stack(rows, axis=1) if rows else np.empty((0, len(self._signals), 2)))
+        if len(points) == 1:
+            return Jets(np.empty(0), np.empty((0, len(self._signals), 2)))
+        found = self._tangents.rates(scene, grid_of_points(scene, points))
+        return Jets(points, np.stack([np.stack(found[name], axis=1) for name in self._signals], axis=1))
 
     def _samples(self, run: Signals, jets: "Jets") -> Resampled:
         """Return the run with these samples of its signals."""
@@ -252,7 +262,7 @@ class Composed:
         edges = {edge for window in windows for edge in (window.start, window.start + window.width)}
         found = [np.empty(0)]
         for edge in edges if SHAFT_ANGLE in samples else ():
-            times = np.array(sorted(run_of(samples).stands_at(edge)))
+            times = np.array([time for time in sorted(run_of(samples).stands_at(edge)) if time > 0.0])
             for _ in range(NEWTON if len(times) else 0):
                 angle, speed = self._at(scene, times).rows[-len(times) :, self._signals.index(SHAFT_ANGLE)].T
                 off = (angle - edge + 0.5 * TURN) % TURN - 0.5 * TURN

@@ -258,6 +258,14 @@ def test_a_dwell_that_an_end_of_the_run_cuts_off_is_not_proven(loom: Scene) -> N
     assert "one is cut off by an end of the run" in found.why
 
 
+def test_a_dwell_is_not_proven_where_runs_end_at_different_angles(loom: Scene) -> None:
+    text = loom.text.split("[[claims]]")[0].replace("revolutions = 2", 'duration = "0.4 s"\nstep = "0.1 ms"')
+    text = "\n".join(line for line in text.splitlines() if not line.startswith("steps_per_revolution"))
+    text += "\n" + claim("dwell", heald="heald_1", at_least="30 deg")
+    (found,) = prove(parse(text, "loom"), over=["shaft.speed=450rpm..600rpm"]).claims
+    assert "the run ends at another angle" in found.why
+
+
 def test_values_that_are_set_stay_set_while_others_vary(loom: Scene) -> None:
     heavier = {"belt.head_mass": "130 g"}
     over = ["shaft.speed=500rpm..560rpm"]

@@ -4,6 +4,7 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 from ...components.shaft_driven import FOLLOWING
+from ...declaring.variables import AT_STEP_END
 from ...errors import LoomfmuError
 from ...machines import TAKERS
 from ...own.declared import FILES, ISOLATED, PARAMETER_SETS
@@ -50,7 +51,7 @@ class Values:
         port, component = instance.fmu.ports.get(variable), instance.fmu.component
         if port is None or port.own != variable or variable in NOT_VALUES:
             return False
-        if variable == FOLLOWING or (component and variable in component.unsteady):
+        if variable in (FOLLOWING, AT_STEP_END) or (component and variable in component.unsteady):
             return False
         free = port.causality in ("parameter", "input") and (instance.name, variable) not in self._fed
         return free and not self._mixes(instance)

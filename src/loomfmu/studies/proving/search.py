@@ -109,6 +109,10 @@ class Search:
             if not chain.timed:
                 if not isinstance(each, Spans):
                     each.ranges(first, last)
+                elif self._scene.step is not None and self._speeds[0] != self._speeds[1]:
+                    raise Unprovable(
+                        "at each speed the run ends at another angle, where it may cut off a dwell"
+                    )
             elif isinstance(each, Spans) or each.window or each.angles:
                 raise Unprovable("the speed changes, or a value follows a table, and the claim names angles")
 
