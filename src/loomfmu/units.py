@@ -57,6 +57,7 @@ UNITS = {
     "g": Unit(kg=1, factor=1e-3),
     "s": Unit(s=1),
     "ms": Unit(s=1, factor=1e-3),
+    "1/m": Unit(m=-1),
     "1/s": Unit(s=-1),
     "1/s2": Unit(s=-2),
     "rad": Unit(rad=1),

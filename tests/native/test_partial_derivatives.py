@@ -22,6 +22,7 @@ from loomfmu.fmi.native.native_fmu import sources
 
 STEPS = [1e-2 / 4.0**n for n in range(8)]  # of the differences, as shares of a variable's scale
 POINTS = {"start": 2, "step": 4}
+SIZE = 1e-3  # of a step [s]
 MANY = 100  # of each kind: 200 points for a component
 
 
@@ -349,6 +350,26 @@ def test_parameters_count_at_the_start_and_without_a_memory(native, fmi):
     other = native("WeftInsertion", fmi=fmi).start(speed=speed + size)
     assert other.step(0.0, 1e-3) == OK
     assert (other.get("travel")[0] - travel) / size == pytest.approx(slope, rel=1e-4)  # forward difference
+
+
+def test_an_input_that_stays_counts(native):
+    """As the clearance of a guide does, whose length factor is computed anew only where it changes."""
+
+    def after(clearance: float) -> Instance:
+        belt = native("BeltMonitor").start(
+            travel=1.2, velocity=10.0, acceleration=-1500.0, guide_clearance=4e-4
+        )
+        assert belt.step(0.0, SIZE) == OK
+        assert belt.set(guide_clearance=clearance, travel=1.2 + 10.0 * SIZE) == OK
+        assert belt.step(SIZE, SIZE) == OK
+        return belt
+
+    size, outputs = 1e-8, ["length_factor", "margin", "lowest_margin"]
+    _status, slopes = after(4e-4).derivative(outputs, ["guide_clearance"], [1.0])
+    above, below = after(4e-4 + size).get(*outputs), after(4e-4 - size).get(*outputs)
+    for slope, high, low in zip(slopes, above, below, strict=True):
+        assert slope == pytest.approx((high - low) / (2.0 * size), rel=1e-5)
+    assert slopes[0] == pytest.approx(557.96, rel=1e-4)
 
 
 @either_fmi

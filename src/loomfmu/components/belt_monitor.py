@@ -11,6 +11,7 @@ from ..physics.belt import (
     critical_force,
     elastica_deflection,
     length_factor,
+    length_factor_slope,
     margin,
     speed_limit,
     weft_load,
@@ -138,6 +139,7 @@ class BeltMonitor(ShaftDriven):
     acceleration_rate: float = auxiliary("m/s3", "Rate of the acceleration between the last two samples")
     bend_rate: float = auxiliary("m/s", "Rate of the second derivative by shaft angle between the samples")
     factor_clearance: float = auxiliary("m", "Clearance for which length_factor was computed")
+    factor_slope: float = auxiliary("1/m", "Slope of length_factor at that clearance")
     sampled_time: float = auxiliary("s", "Time of the last sample of the inputs")
     sampled_travel: float = auxiliary("m", "Travel at the last sample")
     sampled_velocity: float = auxiliary("m/s", "Velocity at the last sample")
@@ -197,7 +199,11 @@ class BeltMonitor(ShaftDriven):
             self.length_factor = self.prescribed_length_factor
         elif self.guide_clearance != self.factor_clearance:
             self.length_factor = length_factor(self.guide_clearance)
+            self.factor_slope = length_factor_slope(self.guide_clearance)
             self.factor_clearance = self.guide_clearance
+        else:
+            # nothing, but its derivative by the clearance is something
+            self.length_factor += self.factor_slope * (self.guide_clearance - self.factor_clearance)
 
     def take_sample(self, time: float, lead: float) -> None:
         """Derivatives of the travel by the shaft angle, from its rates and the shaft's."""
@@ -234,6 +240,8 @@ class BeltMonitor(ShaftDriven):
         if self.sampled_clearance != self.guide_clearance and not self.prescribe_length_factor:
             clearance = self.sampled_clearance + share * (self.guide_clearance - self.sampled_clearance)
             factor = length_factor(clearance)
+        elif not self.prescribe_length_factor:
+            factor += self.factor_slope * (1.0 - share) * (self.sampled_clearance - self.guide_clearance)
         free_length = travel - self.idle_travel - self.head_length
         if which == LIMIT:
             return speed_limit(free_length, second, factor, self.bending_stiffness, self.head_mass, tension)

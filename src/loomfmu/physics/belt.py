@@ -50,6 +50,21 @@ def length_factor(clearance: float) -> float:
     return factor
 
 
+def length_factor_slope(clearance: float) -> float:
+    """Slope of `length_factor` [1/m]; at the last knot that beyond it, which is 0."""
+    slope = 0.0
+    for index in range(4):
+        if CLEARANCES[index] <= clearance < CLEARANCES[index + 1]:
+            width = CLEARANCES[index + 1] - CLEARANCES[index]
+            t = (clearance - CLEARANCES[index]) / width
+            slope = (
+                6.0 * t * (1.0 - t) * (FACTORS[index + 1] - FACTORS[index]) / width
+                + (1.0 - t) * (1.0 - 3.0 * t) * SLOPES[index]
+                - t * (2.0 - 3.0 * t) * SLOPES[index + 1]
+            )
+    return slope
+
+
 def _within_one(t: float) -> float:
     """Return a number, or 0 below 0 and 1 above 1: without a comparison, so that its slopes are known."""
     return 0.5 * (fabs(t) - fabs(t - 1.0) + 1.0)
