@@ -205,6 +205,19 @@ def lowest_push() -> float:
     raise AssertionError("the head is never pulled")
 
 
+@pytest.mark.parametrize("start", [0.0, 40.3, 212.907])
+def test_a_beat_up_shorter_than_a_step_is_not_missed(start: float) -> None:
+    scene = read(
+        "[reed]\nweaving_resistance = 1.0\nresistance_reach = '0.51 mm'\ncloth_stiffness = 1e8\n",
+        claim("below", signal="reed.beat_up_force", bound="200 N"),
+    )
+    values = {"shaft.ripple_amplitude": 0.0, "shaft.start_angle": f"{start} deg"}
+    (verdict,) = evaluate(scene, set={**values, "steps_per_revolution": 180}).claims
+    assert not verdict.holds and verdict.worst == pytest.approx(238.095, rel=1e-5)  # K (1/0.2 - 1/0.21) / mm
+    (verdict,) = evaluate(scene, set={**values, "steps_per_revolution": 1440}).claims
+    assert verdict.word == "FAILS"
+
+
 def test_a_window_may_begin_where_the_run_does() -> None:
     scene = read(claim("below", signal="weft.travel", bound="5 m", window=["0 deg", "30 deg"]))
     (verdict,) = evaluate(scene, set={"revolutions": 0.5}).claims

@@ -206,9 +206,18 @@ class ReedBeatUp(ShaftDriven):
 
     @classmethod
     def shortest_event(cls, value: Callable[[str], Any]) -> tuple[float, str]:
-        """The run of the servo, or where that is shorter four times its speeding up."""
-        share = min(1.0, 4.0 * value("ramp_share"))
-        return (share * value("run_angle") if value("servo") else inf), "the run of the servo"
+        """The run of the servo, or four times its speeding up, or the way to the beat-up on the fell."""
+        run, run_name = inf, "the run of the servo"
+        if value("servo"):
+            run = min(1.0, 4.0 * value("ramp_share")) * value("run_angle")
+        if not value("weaving_resistance"):
+            return run, run_name
+        # the reed is nowhere quicker than twice what a long coupler would make of it near its dead centre
+        quickest = 2.0 * value("crank_length") * value("arm_length") / value("rocker_length")
+        beat = sqrt(2.0 * (value("resistance_reach") - value("pick_spacing")) / quickest)
+        if value("servo"):
+            beat *= (1.0 - value("ramp_share")) * value("run_angle") / (2.0 * pi)
+        return min((run, run_name), (beat, "the way of the pick into the fell"))
 
     def check(self) -> int:
         """Check that the crank makes full turns and that the rod swings the reed, clear of dead points."""

@@ -41,7 +41,10 @@ class Contact:
         return float(self.pressure.max())
 
     def endures(self, allowed: Quantity) -> bool:
-        """Return whether the pressure stays within what the softer of both bodies endures, `allowed` [Pa]."""
+        """Return whether the pressure stays within what the softer of both bodies endures, `allowed` [Pa].
+
+        It says nothing of a roller that lifts off, which a negative `force` shows, and comes down again.
+        """
         return self.highest_pressure <= read("contact_pressure", allowed)
 
 

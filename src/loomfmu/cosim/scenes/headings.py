@@ -1,5 +1,6 @@
 """The heading of a run, made of the values that it has, so that values set later keep it true."""
 
+import re
 from collections.abc import Collection, Iterable, Iterator
 from typing import Any
 
@@ -60,10 +61,9 @@ def _own_values(scene: Scene) -> dict[str, str]:
 
 
 def _weave(instances: Iterable[Instance]) -> str:
-    """The pegs of all heald frames, if there are any."""
-    frames = [
-        instance for instance in instances if instance.fmu.ours and "pattern_length" in instance.fmu.ports
-    ]
+    """The pegs of all heald frames in the order of their numbers, if there are any."""
+    frames = [each for each in instances if each.fmu.ours and "pattern_length" in each.fmu.ports]
+    frames.sort(key=lambda each: [int(part) for part in re.findall(r"\d+", each.name)])
     if not frames:
         return ""
     pegs = [standard().pegs({name: frame.start(name) for name in frame.fmu.ports}) for frame in frames]

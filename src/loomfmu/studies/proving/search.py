@@ -77,7 +77,7 @@ class Search:
         (condition,) = conditions if len(conditions) == 1 else (None,)
         if not isinstance(condition, Always) or len(condition.any_of) > 1 or self._doubt(number):
             return None
-        if chain.timed and self._speeds[0] != self._speeds[1]:
+        if (chain.timed or self._scene.step is not None) and self._speeds[0] != self._speeds[1]:
             return None  # runs end at different times: the lowest value may come after the end of some
         found = Lowest(chain, condition.any_of[0], self._scale(chain), width)
         for box in self._boxes(condition, chain):
