@@ -11,7 +11,7 @@ from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement
 
 from ...declaring.variables import AT_STEP_END
-from ...errors import LoomfmuError
+from ...errors import LoomfmuError, listed
 from ...files import check_target, write_file, zip_with
 from ...fmi import fmu_files
 from ...fmi.description.model_description import DEFAULT_TOLERANCE
@@ -22,6 +22,7 @@ from ...version import __version__
 from ..importing import fmus
 from ..importing.conversions import Definition
 from ..importing.fmus import Fmu, Port, Value
+from ..scenes.graph import step_order
 from ..scenes.headings import heading
 from ..scenes.instances import Instance
 from ..scenes.scene import Scene, files_of
@@ -77,7 +78,7 @@ def export(
         raise LoomfmuError("live FMUs are of FMI 2.0: choose native ones for FMI 3.0")
     content = fmu_files.zipped(contents(scene, flavour, platforms, fmi, connectors))
     write_file(path, content, PACKAGE, inputs, overwrite)
-    return [*scene.notes, *_driven(scene), *_enumerated(scene)]
+    return [*scene.notes, *_driven(scene), *_looped(scene), *_enumerated(scene)]
 
 
 def _driven(scene: Scene) -> list[str]:
@@ -86,6 +87,16 @@ def _driven(scene: Scene) -> list[str]:
         " other tools keep it at its first value"
         for drive in scene.drives
     ]
+
+
+def _looped(scene: Scene) -> list[str]:
+    """A warning about wires that close algebraic loops."""
+    lagged = step_order(scene.instances, scene.wires)[1]
+    if not lagged:
+        return []
+    wires = listed(f"{'.'.join(wire.source)} to {'.'.join(wire.sink)}" for wire in lagged)
+    late = "other tools may hand over a step late what runs along them"
+    return [f"wires close an algebraic loop, {wires}: {late}; loomfmu export --fmu iterates it in one FMU"]
 
 
 def _enumerated(scene: Scene) -> list[str]:
