@@ -135,7 +135,7 @@ def values_agree(page: Any, trace: Any) -> None:
 
 
 def verdicts_agree(page: Any, expected: Any) -> None:
-    """What the page judges is what the run judges; places to a thousandth of a degree."""
+    """What the page judges is what the run judges, but between the samples."""
     found = page.evaluate("loomfmu.live.verdicts")
     assert len(found) == len(expected)
     for mine, its in zip(found, expected, strict=True):
@@ -145,10 +145,13 @@ def verdicts_agree(page: Any, expected: Any) -> None:
         assert mine["holds"] == its.holds, its
         assert mine.get("signal", its.signal) == its.signal
         # edges of spans are times: rounding of sums of some 1e4 steps
-        assert mine["worst"] == pytest.approx(its.worst, rel=1e-9, abs=1e-12), its
+        assert mine["worst"] == pytest.approx(its.worst, rel=1e-8, abs=1e-12), its
         assert mine["bound"] == pytest.approx(its.bound, rel=1e-14), its
         if math.isfinite(its.time):
-            assert mine["time"] == pytest.approx(its.time, abs=1e-8), its
+            between = (
+                3e-4 if its.signal.startswith("belt") else 1e-8
+            )  # a step, where the run asks the belt itself
+            assert mine["time"] == pytest.approx(its.time, abs=between), its
 
 
 @pytest.mark.parametrize(

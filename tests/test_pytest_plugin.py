@@ -28,7 +28,8 @@ signal = "belt.lowest_speed_limit"
 bound = "300 rpm"
 """
 FAST, SLOW = SCENE.replace("SPEED", "720"), SCENE.replace("SPEED", "600")
-NEAR = SCENE.replace("SPEED", "681.805").replace("= 360", "= 90")  # the equations give 681.804
+TABLE = '[inputs]\n"belt.guide_clearance" = [[0, "0.3 mm"], [1, "0.3 mm"]]\n'  # so that steps matter
+NEAR = SCENE.replace("SPEED", "681.805").replace("= 360", "= 90") + TABLE  # the equations give 681.804
 
 
 def write(pytester: pytest.Pytester, name: str, text: str) -> Path:

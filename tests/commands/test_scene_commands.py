@@ -30,7 +30,7 @@ def test_run_prints_the_verdicts_and_returns_whether_all_hold(
     away = {0.1: "+555.8 %", 0.9: "-27.13 %"}[bound]
     error = evaluate("scene.toml").claims[0].shown_error
     assert f", bound {bound} ({away}), error {error}, at 0.0" in lines[place + 1]
-    assert "".join(lines[place + 1 : place + 3]).endswith(" rev.  1")
+    assert " ".join("".join(lines[place + 1 : place + 3]).split()).endswith(" rev. 1")
     assert "To be read after the run." in lines
     assert lines[-1] == "trace: results/scene.h5    summary: loomfmu show results/scene.h5"
     assert main(["run", "scene.toml", "--set", "shaft.speed=300rpm", "--output", "other.h5"]) == status

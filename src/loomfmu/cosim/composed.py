@@ -38,6 +38,7 @@ Flags = NDArray[np.bool_]
 
 FEWEST = 2  # steps, which show a slope of rates
 SHOWN = 180.0  # steps in a revolution, which show where extremes may lie
+MOST = 200_000  # times: only what is rounding everywhere, such as a sum that is always 0, asks for more
 PARTS, ROUNDS = 32, 8  # of a step that is divided, and how often: 1e12 parts
 NARROW = 1e-12  # of the run: steps that are divided no more, which may hold a jump
 EXACT, ROUNDED = 1e-11, 1e-13  # of the worst and of the largest value: what a cubic, and rounding, may leave
@@ -209,8 +210,8 @@ class Composed:
                 doubtful |= cells
                 if not cells.any():
                     unsure.remove(number)
-            if not unsure:
-                break
+            if not unsure or len(jets.time) + PARTS * np.sum(doubtful) > MOST:
+                break  # what is left is the error
             jets = jets.with_more(self._at(scene, _parts(jets.time, doubtful)))
         return samples, left
 
