@@ -307,6 +307,11 @@ def test_a_product_of_signals_that_underflows_is_not_trusted() -> None:
     assert Expressed(run(), read(text)).noise(0.0, 0.0) > 1e50
 
 
+def test_a_long_sum_has_no_cases_rather_than_two_to_its_length() -> None:
+    expression = read(" + ".join(30 * ["abs(a.x)"]))
+    assert expression.cases(-1) == [expression]
+
+
 def test_a_long_product_is_read_at_once() -> None:
     assert read("a.x" + 45 * " * 2").node.linear == ({"a.x": 2**45}, 0)  # with 2^45 looks at its start
 

@@ -89,7 +89,9 @@ class Node:
         if self.kind == "neg":
             return [each.negative for each in self.parts[0].cases(-sense)]
         if self.kind == "+":
-            return [self.of(*each) for each in product(*(part.cases(sense) for part in self.parts))]
+            every = [part.cases(sense) for part in self.parts]
+            many = math.prod(map(len, every)) > MOST_CASES  # each further one would double them
+            return [] if many else [self.of(*each) for each in product(*every)]
         if self.kind == "*" or (self.kind == "/" and self.parts[1].constant is not None):
             return self._scaled(sense)
         if self.kind == ("max" if sense < 0 else "min"):
