@@ -78,13 +78,6 @@ class Composed:
         return {name for name, port in ports.items() if not (port.rate or any(port.beside))}
 
     @property
-    def alone(self) -> set[int]:
-        """The claims, by their numbers, that nothing else judges between samples."""
-        return {
-            n for n, each in self.claims.items() if self.unrated.intersection(each.signals(self._requested))
-        }
-
-    @property
     def needed(self) -> Collection[str]:
         """The instances on which these claims depend."""
         return self._needed
@@ -202,8 +195,10 @@ class Composed:
         """Return samples that show the worst values of all claims, and how far these may be off."""
         jets = self._at(scene, np.union1d(times, self._worst_samples(run)))
         jets = jets.with_more(self._at(scene, self._edges(scene, self._samples(run, jets))))
-        left, unsure = dict[int, float](), [*claims]
+        left, unsure, doubtful = dict[int, float](), [*claims], np.zeros(0, dtype=bool)
         for _ in range(ROUNDS):
+            if doubtful.any():
+                jets = jets.with_more(self._at(scene, _parts(jets.time, doubtful)))
             samples, doubtful = self._samples(run, jets), np.zeros(len(jets.time) - 1, dtype=bool)
             for number in [*unsure]:
                 cells, left[number] = self._doubtful(claims[number], samples)
@@ -212,7 +207,6 @@ class Composed:
                     unsure.remove(number)
             if not unsure or len(jets.time) + PARTS * np.sum(doubtful) > MOST:
                 break  # what is left is the error
-            jets = jets.with_more(self._at(scene, _parts(jets.time, doubtful)))
         return samples, left
 
     def _equal(self, scene: Scene, run: Signals) -> Floats:

@@ -76,7 +76,7 @@ class Estimates:
         self.claims, self._dependence = dependence.claims, dependence
         self._run, self._signals, self._deciders = run, signals, deciders
         # what is kept of a run, beside what claims need, to tell whether steps are short enough
-        self.shown = (*self._dependence.counters, *self._angles)
+        self.shown = (*self._dependence.counters, *self.angles)
         self.methods = self._dependence.methods
 
     @property
@@ -92,12 +92,7 @@ class Estimates:
     @property
     def angles(self) -> list[str]:
         """The signals of all angles whose speeds matter."""
-        return list(self._angles)
-
-    @property
-    def _angles(self) -> dict[str, None]:
-        """The signals of all angles whose speeds matter."""
-        return dict.fromkeys(chain.from_iterable(self._dependence.angles.values()))
+        return list(dict.fromkeys(chain.from_iterable(self._dependence.angles.values())))
 
     def coarser(self, scene: Scene, grid: Grid, wanted: Collection[int]) -> Coarser:
         """Judge some claims, counted from 0, on coarser steps than those of a grid."""
@@ -156,7 +151,7 @@ class Estimates:
         counters = self._dependence.counters
         counted = {each: Count(trace.time, trace[each]) for each in counters if each in trace}
         return Judged(
-            worst, counted, {angle: _fastest(trace, angle) for angle in self._angles if angle in trace}
+            worst, counted, {angle: _fastest(trace, angle) for angle in self.angles if angle in trace}
         )
 
     def of(

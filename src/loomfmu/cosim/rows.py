@@ -26,7 +26,7 @@ from .estimates import Estimates, coarseness, usual
 from .importing.slave import Slave
 from .master.grid import contradicted, passed_by
 from .master.master import Interrupted
-from .master.rows import Judged, RowRunner, Variable, Varied
+from .master.rows import Judged, RowRunner, Variable, Varied, parts_of
 from .master.steppers import SOURCE
 from .planning.plan import Stepping
 from .planning.pruning import Pruned
@@ -35,7 +35,7 @@ from .scenes.graph import step_order
 from .scenes.instances import altered
 from .scenes.scene import Scene
 from .scenes.values import Values
-from .varying import Questions, Steps, allows, numbers_of, parts_of, reads, turned, with_row
+from .varying import Questions, Steps, allows, numbers_of, reads, turned, with_row
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -150,7 +150,7 @@ class RowsInC:
                 rows = Questions(RowRunner(master), own.recording(plan), self._claims)
                 reached = self._reached(turning, plan.pruned, stepping)
                 varied = Varied(turning, numbers_of(rows.named, takers), stepping.column, reached)
-                rows.runner.prepare(rows.judging(), varied, self._angles)
+                rows.runner.prepare(rows.judging(), varied, self._estimates.angles)
                 judged = rows.runner.run(stepping.table, possible)
                 close = self._near(scene, rows.forms, judged.verdicts)
                 exact = self._exact(judged, close | (not near))
@@ -190,7 +190,7 @@ class RowsInC:
         others = [*varied.others, *numbers_of(composition.named, takers), *composition.settings(takers)]
         with composition.tangents.placed() as composition.struct.tangents:
             struct = ctypes.addressof(composition.struct)
-            rows.runner.prepare(rows.judging(struct), replace(varied, others=others), self._angles)
+            rows.runner.prepare(rows.judging(struct), replace(varied, others=others), self._estimates.angles)
             found = rows.runner.run(stepping.table, rest, exact[:, list(self._composed.claims)])
         again = exact & found.clean[:, None]
         judged.verdicts[again] = found.verdicts[again]
@@ -269,11 +269,6 @@ class RowsInC:
         sinks = sources_of((wire.sink[0], wire.source[0]) for wire in wires)
         return upstream({name for name, _variable in takers if name in running}, sinks)
 
-    @property
-    def _angles(self) -> list[str]:
-        """The signals of the angles whose speeds say whether steps are too long."""
-        return self._estimates.angles
-
     def _shown(
         self,
         scene: Scene,
@@ -287,10 +282,12 @@ class RowsInC:
         size = scene.step_size if stepping.size is None else stepping.size
         sizes = np.broadcast_to(size, len(fastest)) * (1.0 + ROUNDING)
         found = np.ones(len(fastest), dtype=bool)
-        turns = [math.tau / (whole_turn(self._requested.unit(each)) or math.tau) for each in self._angles]
+        turns = [
+            math.tau / (whole_turn(self._requested.unit(each)) or math.tau) for each in self._estimates.angles
+        ]
         speeds = {
             each: fastest[:, place] * turns[place] * (1.0 + ROUNDING)
-            for place, each in enumerate(self._angles)
+            for place, each in enumerate(self._estimates.angles)
         }
         for name, angles in self._estimates.moved.items():
             known = [speeds[each] for each in angles if each in speeds]

@@ -13,7 +13,7 @@ from ..traces import Recording
 from .claims.claim import Claim
 from .claims.judging import run_of
 from .master.grid import uniform
-from .master.rows import Judged, Judging, RowRunner, Setting, Variable
+from .master.rows import Judged, Judging, RowRunner, Setting, Variable, parts_of
 from .planning.pruning import Pruned
 from .planning.requested import parameter_of
 from .scenes.instances import Instance, altered
@@ -135,9 +135,3 @@ def allows(
     except LoomfmuError:
         return False
     return True
-
-
-def parts_of(signal: str) -> Variable:
-    """Return the instance and the variable that a signal or a parameter names."""
-    instance, _, variable = signal.partition(".")
-    return instance, variable

@@ -46,9 +46,11 @@ class Expressed(Extended):
         """Return the samples of a part of the expression, in SI."""
         if node.linear is not None:
             shares, constant = node.linear
-            parts = [[_float(share) * e for e in self._recorded_jet(name)] for name, share in shares.items()]
+            parts = [
+                [as_float(share) * e for e in self._recorded_jet(name)] for name, share in shares.items()
+            ]
             if constant or not shares:
-                parts.append([np.full(len(self.time), _float(constant)), *2 * [np.zeros(len(self.time))]])
+                parts.append([np.full(len(self.time), as_float(constant)), *2 * [np.zeros(len(self.time))]])
             return _sum(parts)
         parts = [self._jet(part) for part in node.parts]
         if node.kind == "neg":
@@ -97,10 +99,10 @@ class Expressed(Extended):
         values = self._jet(node)[0]
         if node.linear is not None:
             shares, constant = node.linear
-            error = np.full(len(self.time), ROUNDING * abs(_float(constant)) + TINY)
+            error = np.full(len(self.time), ROUNDING * abs(as_float(constant)) + TINY)
             for name, share in shares.items():
                 here = np.abs(np.asarray(self._run[name], dtype=float))
-                error += abs(_float(share)) * (off[name] + ROUNDING * here) + TINY * here
+                error += abs(as_float(share)) * (off[name] + ROUNDING * here) + TINY * here
             return values, error
         parts = [self._off(part, off) for part in node.parts]
         errors = [error for _values, error in parts]
@@ -157,7 +159,8 @@ def _sum(parts: list[Jet]) -> Jet:
     return [sum(each[1:], each[0]) for each in zip(*parts, strict=False)]
 
 
-def _float(exact: Fraction) -> float:
+def as_float(exact: Fraction) -> float:
+    """Return a number as a float, which is infinite where that is too small for it."""
     try:
         return float(exact)
     except OverflowError:  # the verdict says what is not finite

@@ -1,6 +1,6 @@
 """Claims on expressions of signals: each is judged as a signal whose curve follows from theirs."""
 
-from contextlib import suppress
+import math
 from dataclasses import replace
 from fractions import Fraction
 
@@ -9,7 +9,7 @@ import numpy as np
 from ...traces import Signals, Verdict
 from .bounded import Above, Below, Bounded
 from .conditions import Always, Condition, Sum, Unprovable, present
-from .expressed import Expressed
+from .expressed import Expressed, as_float
 from .expressions import Expression
 from .judging import Question, run_of
 from .movers import Wired
@@ -118,10 +118,10 @@ class _OfExpression(Bounded, kind=False):
 
 def _float(exact: Fraction) -> float:
     """Return a number as a float. Raises Unprovable where it is too large or too small for that."""
-    with suppress(OverflowError):
-        if (found := float(exact)) or not exact:
-            return found
-    raise Unprovable("it has numbers that are too large or too small")
+    found = as_float(exact)
+    if math.isinf(found) or (exact and not found):
+        raise Unprovable("it has numbers that are too large or too small")
+    return found
 
 
 class _AboveExpression(_OfExpression, Above, kind=False):

@@ -24,6 +24,12 @@ MOST, FIRST = 4096, 16  # rows that are handed over at once
 ROOM = 1 << 20  # bytes for the notes of these rows
 
 
+def parts_of(signal: str) -> Variable:
+    """Return the instance and the variable that a signal or a parameter names."""
+    instance, _, variable = signal.partition(".")
+    return instance, variable
+
+
 class Judging(NamedTuple):
     """The functions of the rules and their run; questions, each with its words and the number of its verdict.
 
@@ -185,7 +191,7 @@ class RowRunner:
         self._list(rows, "asked", (AskedInC * len(asked))(*asked))
         heard = [ctypes.addressof(slave.heard) for slave in master.slaves.values()]
         self._list(rows, "heard", (ctypes.c_void_p * len(heard))(*heard))
-        self._list(rows, "angles", _places(master.slots[_parts(signal)][1] for signal in angles))
+        self._list(rows, "angles", _places(master.slots[parts_of(signal)][1] for signal in angles))
         for real, name in ((True, "reals"), (False, "integers")):
             places = _places(slot for kind, slot in kept if (kind == "Real") is real)
             self._list(rows, f"kept_{name}", places)
@@ -246,7 +252,7 @@ class RowRunner:
     def _copies(self, copies: Mapping[str, Floats]) -> Any:
         found = []
         for signal, values in copies.items():
-            kind, slot = self._master.slots[_parts(signal)]
+            kind, slot = self._master.slots[parts_of(signal)]
             found.append(_Copied(slot, values.ctypes.data, kind == "Boolean"))
         return (_Copied * len(found))(*found)
 
@@ -315,11 +321,6 @@ class RowRunner:
 def _compiled(action: Action) -> Compiled:
     assert action.call.compiled is not None, "the calls of native FMUs can be made in C"
     return action.call.compiled
-
-
-def _parts(signal: str) -> Variable:
-    instance, _, variable = signal.partition(".")
-    return instance, variable
 
 
 def _places(slots: Iterable[int]) -> NDArray[np.int64]:
