@@ -10,6 +10,8 @@ import pytest
 from scene_texts import SAFE, claim, loom, parsed, table, unsolved
 
 from loomfmu import LoomfmuError, Prepared, prepare
+from loomfmu.cosim import composed
+from loomfmu.cosim import rows as rows_in_c
 from loomfmu.cosim.many import Rows
 from loomfmu.cosim.scenes.scene import Scene
 from loomfmu.traces import Verdict
@@ -100,6 +102,16 @@ def test_verdicts_near_their_bounds_are_exact_in_c_too() -> None:
     with prepare(belt(window)) as found:
         many = checked(found, drawn(ranges, 40))
         assert 0 < len(many.single) == sum(bool(many.near(row)) for row in range(40)) < 40
+
+
+def test_rows_whose_steps_are_divided_as_often_as_may_be_are_those_of_single_runs(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    for place in (composed, rows_in_c):
+        monkeypatch.setattr(place, "MOST", 400)  # 181 samples, and seven steps in 32 parts
+    with prepare(belt()) as found:
+        many = checked(found, drawn({"shaft.speed": RANGES["shaft.speed"]}, 10), errors="none")
+        assert len(many.single) == 10
 
 
 def test_only_what_a_value_reaches_runs_again() -> None:

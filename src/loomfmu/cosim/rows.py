@@ -20,7 +20,7 @@ from ..fmi.native.libraries import library_of
 from .claims.claim import Claim
 from .claims.judging import FIELDS, Form
 from .claims.movers import whole_turn
-from .composed import Composed
+from .composed import MOST, Composed
 from .dependence import TOO_LONG
 from .estimates import Estimates, coarseness, usual
 from .importing.slave import Slave
@@ -184,7 +184,8 @@ class RowsInC:
         if not (self._composed.plain and self._count(scene, stepping, takers)):
             return judged._replace(clean=judged.clean & ~rest)
         counts = stepping.table[rest, -1]
-        room = int(4.0 * np.max(counts, initial=0.0)) + ROOM
+        # in less room than the most that are divided row by row, C gives up before those end otherwise
+        room = min(int(4.0 * np.max(counts, initial=0.0)) + ROOM, MOST // 2)
         composition = self._composed.composition(scene, rows.recording, room)
         composition.struct.count_column = stepping.table.shape[1] - 1
         others = [*varied.others, *numbers_of(composition.named, takers), *composition.settings(takers)]
