@@ -51,11 +51,8 @@ from .shared_declarations import head_acceleration, head_travel, head_velocity, 
 from .terminals import HEAD
 
 NUMBERS = ("first", "second", "third", "fourth", "fifth", "sixth")
-KNOWN, FOLLOWED, LARGEST = (
-    "deflection_known",
-    "followed",
-    "largest_known",
-)  # what says when other outputs are known
+# what says when other outputs are known
+KNOWN, FOLLOWED, LARGEST = "deflection_known", "followed", "largest_known"
 ERROR, MARGIN_ERROR = "deflection_error", "margin_error"  # and how far they may be off
 
 CALIBRATED = 1  # guide: pinned, with a stiffness that makes up for it

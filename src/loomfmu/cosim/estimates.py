@@ -284,6 +284,6 @@ def _unknown(verdict: Verdict, why: str) -> Verdict:
 
 
 def _coarser(scene: Scene, grid: Grid, share: float) -> Grid | None:
-    """Equal steps, about a share of the scene's; None where the scene's are no more."""
+    """Return equal steps, about a share of the scene's number; None where that is not fewer."""
     coarse = uniform(scene, share)
     return coarse if coarse.steps < grid.steps else None

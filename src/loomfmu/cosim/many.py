@@ -122,7 +122,7 @@ class Many:
     """The values of many runs: a sequence for each key, all of one length, numbers in SI."""
 
     def __init__(self, values: Mapping[str, Any]):
-        """Take the values. Raises LoomfmuError for those that are no sequences of one length."""
+        """Take the values. Raises LoomfmuError unless they are sequences of equal length."""
         self._values = {key: _listed(key, given) for key, given in values.items()}
         lengths = {key: len(given) for key, given in self._values.items()}
         if len(set(lengths.values())) > 1:
@@ -204,7 +204,7 @@ class Many:
 
 
 def _listed(key: str, given: Any) -> list[Any]:
-    """Values of a key as a list; numbers that are no whole ones are known to be in SI."""
+    """Return the values of a key as a list; floats are in SI."""
     if isinstance(given, str) or not isinstance(given, Sequence | np.ndarray):
         raise LoomfmuError(f"{key} = {shown(given)} is not a sequence of values")
     values = given.tolist() if isinstance(given, np.ndarray) else list(given)

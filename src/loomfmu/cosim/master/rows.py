@@ -33,8 +33,8 @@ def parts_of(signal: str) -> Variable:
 class Judging(NamedTuple):
     """The functions of the rules and their run; questions, each with its words and the number of its verdict.
 
-    `copies` are the arrays from which the rules read signals that are no real numbers, `verdicts` is how many
-    there are with those that are `composed`: the address of their struct, or None.
+    `copies` are the arrays from which the rules read signals that are not real numbers. `verdicts` is the
+    number of verdicts, the composed ones included; `composed` is the address of their struct, or None.
     """
 
     rules: tuple[int, ...]
