@@ -9,11 +9,14 @@ from collections.abc import Callable, Sequence
 
 INTERRUPTED = 130
 
+SELDOM = 100_000  # objects: to search for garbage as often as Python does takes a tenth of a run
+
 atexit.register(gc.freeze)  # last of all: Python ends without a search for garbage, 60 ms of a run
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command and return its exit status."""
+    gc.set_threshold(SELDOM)
     try:  # Ctrl-C may come while the commands are imported, which takes a quarter of a second
         from .commands import parser, with_negative
         from .commands.status import status_of
