@@ -1,40 +1,38 @@
-"""Claims that are composed, for rows in C: `master/native/compose.h` has the same structs."""
+"""Claims that are composed, for C: `master/native/compose.h` has the same structs."""
 
 import ctypes
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from functools import cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..traces import Recording
+from ..fmi.native.libraries import needed_library
+from ..traces import Signals
 from ..traces.extended import RATE, Resampled
 from .claims.claim import Claim
 from .claims.judging import run_of
 from .master.rows import AskedInC, JudgesInC, Setting, Variable, asked_in_c
-from .master.steppers import arrays, fields
+from .master.steppers import SOURCE, arrays, fields
+from .planning.requested import SHAFT_ANGLE
 from .scenes.scene import Scene
 from .tangents import Tangents
 
 Floats = NDArray[np.float64]
 REAL, WHOLE = 0, 2  # doubles and int64_t, as components with dual numbers have them
+SHARE = 1e-12  # of value or bound: what rounding leaves
 
 
-class Rule(NamedTuple):
-    """The numbers by which steps are divided, see composed.py."""
-
-    parts: int
-    rounds: int
-    doubt: float
-    narrow: float
-    exact: float
-    rounded: float
-    share: float
+class _Recorded(ctypes.Structure):
+    _fields_ = fields(first="void_p", stride="int64")
 
 
 class _Moving(ctypes.Structure):
     _fields_ = [
-        *fields(asked="int64", base="int64", held="int64", sign="double", recorded="int64"),
+        *fields(asked="int64", held="int64", sign="double", values="void_p", stride="int64"),
+        ("recorded", _Recorded),
+        *fields(start="double", width="double"),
         *arrays("windows"),
     ]
 
@@ -48,26 +46,32 @@ class _Image(ctypes.Structure):
 
 
 TIMES, ROWS = ("times", "new_times", "merged_times"), ("rows", "new_rows", "merged_rows")
-DUALS, REALS, MARKS = ("starts", "sizes"), ("lowest", "left"), ("doubtful", "own", "inside", "may_be")
+DUALS, REALS, MARKS = (
+    ("starts", "sizes"),
+    ("lowest", "left"),
+    ("doubtful", "own", "inside", "may_be", "unsure"),
+)
 PLACES = (*TIMES, *ROWS, *DUALS, *REALS, *MARKS)
+_EXPRESS = ctypes.PYFUNCTYPE(None, ctypes.c_int64)
 
 
 class _Composed(ctypes.Structure):
     _fields_ = [
         *arrays("images", "motions", "latches", "asked"),
-        *fields(tangents="void_p"),
+        ("run", _Recorded),
+        ("run_angle", _Recorded),
+        *fields(tangents="void_p", express="void_p"),
         ("judges", JudgesInC),
         *fields(**dict.fromkeys(PLACES, "void_p")),
-        *fields(room="int64", count_column="int64", parts="int64", rounds="int64"),
-        *fields(doubt="double", narrow="double", exact="double", rounded="double", share="double"),
+        *fields(room="int64", count_column="int64", angle="int64", complete="int64", share="double"),
     ]
 
 
 class Composition:
-    """The structs of claims, by their numbers among all that are judged.
+    """The structs of claims on a run, by their numbers among all that are judged, and the memory for samples.
 
-    It keeps what C has the addresses of: `struct` is the whole, `named` are the questions and
-    the parameters in each, by their places.
+    It keeps what C has the addresses of: `struct` is the whole, `named` are the questions of rows and the
+    parameters in each, by their places.
     """
 
     def __init__(
@@ -77,56 +81,93 @@ class Composition:
         signals: Sequence[str],
         latches: Mapping[str, tuple[str, float]],
         windows: Mapping[str, Sequence[str]],
-        rule: Rule,
         scene: Scene,
-        run: Recording,
+        run: Signals,
         room: int,
     ):
         self.tangents, self._places = tangents, {name: place for place, name in enumerate(signals)}
+        self._claims, self._latches, self._run, self._room = claims, latches, run, room
         self._memory = _memory(room, len(signals))
         self._held = {name: np.zeros(room) for name in latches}
-        made = {name: self._memory["rows"][:, place, 0] for place, name in enumerate(signals)}
-        rates = {name: RATE + name for name in made}
-        made |= {rates[name]: self._memory["rows"][:, place, 1] for name, place in self._places.items()}
-        self._samples = Resampled(run, self._memory["times"], made | self._held, rates)
-        asked = {number: claim.question(self._samples) for number, claim in claims.items()}
-        judging = run_of(self._samples)
-        self.named = [judging.question(self._samples, each) for each in asked.values()]
-        words = [each.words.encode() for each in asked.values()]
+        self._expressed = list[tuple[Claim, NDArray[Any]]]()
         self._images = list(tangents.images(scene))
-        self.struct = _Composed(judges=JudgesInC(*judging.rules), room=room, **rule._asdict())
-        self._kept: list[Any] = [judging, words]
+        self._kept: list[Any] = []
+        angle = run.columns([SHAFT_ANGLE])[1].values if SHAFT_ANGLE in run else np.zeros(len(run.time))
+        self.struct = _Composed(
+            run=self._recorded(run.columns([])[0].values),
+            run_angle=self._recorded(angle),
+            angle=self._places.get(SHAFT_ANGLE, -1),
+            room=room,
+            share=SHARE,
+        )
         self._list(
             "images",
             _Image,
             [(to.ctypes.data, start.ctypes.data, to.nbytes) for _n, to, start, _p in self._images],
         )
-        self._list("motions", _Moving, self._motions(claims, latches, windows, run))
+        self._list("motions", _Moving, self._motions(windows))
         held = [
             (self._held[name].ctypes.data, self._places[base], sign) for name, (base, sign) in latches.items()
         ]
         self._list("latches", _Latch, held)
-        numbers = [each for each, _named in self.named]
-        given = [asked_in_c(*each) for each in zip(numbers, words, asked, strict=True)]
-        self._list("asked", AskedInC, given)
         for name, each in self._memory.items():
             setattr(self.struct, name, each.ctypes.data)
+        self.struct.asked_count = len(claims)
 
-    def _motions(
-        self,
-        claims: Mapping[int, Claim],
-        latches: Mapping[str, tuple[str, float]],
-        windows: Mapping[str, Sequence[str]],
-        run: Recording,
-    ) -> list[tuple[Any, ...]]:
+    def placed(self, steps: int, wanted: NDArray[np.bool_]) -> tuple[Resampled, Floats]:
+        """Return samples that show the worst values of the wanted claims, and how far these may be off."""
+        samples = ctypes.c_int64(len(self._run.time))
+        place, express = ctypes.c_void_p(wanted.ctypes.data), _EXPRESS(self._express)
+        if self._expressed:
+            self.struct.express = ctypes.cast(express, ctypes.c_void_p).value
+        with self.tangents.placed() as self.struct.tangents:
+            count = _compose()(ctypes.byref(self.struct), ctypes.c_int64(steps), samples, place)
+        found: Floats = self._memory["left"][: len(self._claims)]
+        return self._samples(count), found
+
+    def _samples(self, count: int) -> Resampled:
+        """Return the run with the first samples in memory."""
+        made = dict[str, NDArray[Any]]()
+        for name, place in self._places.items():
+            made[name] = self._memory["rows"][:count, place, 0]
+            made[RATE + name] = self._memory["rows"][:count, place, 1]
+        made |= {name: values[:count] for name, values in self._held.items()}
+        rates = {name: RATE + name for name in self._places}
+        return Resampled(self._run, self._memory["times"][:count], made, rates)
+
+    def _express(self, count: int) -> None:
+        """Compute the expressions of claims at the first samples in memory."""
+        samples = self._samples(count)
+        for claim, places in self._expressed:
+            for place, (run, name, _sign) in zip(places, claim.motions(samples), strict=True):
+                rate = run.rate(name)
+                place[:count, 0] = run[name]
+                place[:count, 1] = np.nan if rate is None else run[rate]
+
+    def _recorded(self, values: Floats) -> _Recorded:
+        self._kept.append(values)
+        return _Recorded(values.ctypes.data, values.strides[0] // values.itemsize)
+
+    def _motions(self, windows: Mapping[str, Sequence[str]]) -> list[tuple[Any, ...]]:
+        rows, signals = self._memory["rows"], len(self._places)
         found = list[tuple[Any, ...]]()
-        for place, claim in enumerate(claims.values()):
-            for name, sense in claim.extremes():
-                base, sign = latches.get(name, (name, sense))
+        for asked, claim in enumerate(self._claims.values()):
+            motions = claim.motions(self._run)
+            plain = all(name in self._run for _run, name, _sense in motions)
+            places = np.zeros((0 if plain else len(motions), self._room, 2))
+            if not plain:
+                self._expressed.append((claim, places))
+            window = getattr(claim, "window", None)
+            start, width = (window.start, window.width) if window else (0.0, -1.0)
+            for number, (run, name, sense) in enumerate(motions):
+                base, sign = self._latches.get(name, (name, sense))
                 shown = np.array([self._places[each] for each in windows.get(base, ())], dtype=np.int64)
                 self._kept.append(shown)
-                held, column = name in latches, run.column(name)
-                found.append((place, self._places[base], held, sign, column, shown.ctypes.data, len(shown)))
+                values = rows[:, self._places[base]] if plain else places[number]
+                recorded = self._recorded(run.columns([name])[1].values)
+                stride = signals if plain else 1
+                at = (asked, name in self._latches, sign, values.ctypes.data, stride, recorded, start, width)
+                found.append((*at, shown.ctypes.data, len(shown)))
         return found
 
     def _list(self, name: str, kind: Any, content: Sequence[Any]) -> None:
@@ -134,6 +175,20 @@ class Composition:
         self._kept.append(made)
         setattr(self.struct, name, ctypes.addressof(made))
         setattr(self.struct, f"{name}_count", len(content))
+
+    # ---- rows
+
+    def ask(self) -> None:
+        """Let C judge the claims of rows, too, each on the samples that it placed."""
+        samples = self._samples(self._room)
+        asked = {number: claim.question(samples) for number, claim in self._claims.items()}
+        judging = run_of(samples)
+        self.named = [judging.question(samples, each) for each in asked.values()]
+        words = [each.words.encode() for each in asked.values()]
+        numbers = [each for each, _named in self.named]
+        self.struct.judges = JudgesInC(*judging.rules)
+        self._list("asked", AskedInC, [asked_in_c(*e) for e in zip(numbers, words, asked, strict=True)])
+        self._kept += [judging, words]
 
     def settings(self, takers: Mapping[Variable, int]) -> list[Setting]:
         """Return where the numbers of a row go: into the components at their start."""
@@ -154,3 +209,10 @@ def _memory(room: int, signals: int) -> dict[str, NDArray[Any]]:
     found |= {name: np.zeros((room, 2)) for name in DUALS}
     found |= {name: np.zeros(room, dtype=np.uint8) for name in MARKS}
     return {name: found[name] for name in PLACES}
+
+
+@cache
+def _compose() -> Any:
+    function = ctypes.PyDLL(str(needed_library(SOURCE))).compose
+    function.restype = ctypes.c_int64
+    return function

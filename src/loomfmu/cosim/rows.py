@@ -20,7 +20,7 @@ from ..fmi.native.libraries import library_of
 from .claims.claim import Claim
 from .claims.judging import FIELDS, Form
 from .claims.movers import whole_turn
-from .composed import MOST, Composed
+from .composed import MOST, ROOM, Composed
 from .dependence import TOO_LONG
 from .estimates import Estimates, coarseness, usual
 from .importing.slave import Slave
@@ -41,7 +41,6 @@ Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 ROUNDING = 1e-9  # far above that of speeds and steps: rows within it are run as any other
 DECIDED = FIELDS.index("decided")
-ROOM = 4096  # samples more than four times those that composed claims begin with
 ENOUGH, LEAST = 16, 0.3  # rows, and the share of them that must be final for more to be worth it
 
 
@@ -181,12 +180,13 @@ class RowsInC:
         rest: Mask = np.any(exact, axis=1)
         if not rest.any():
             return judged
-        if not (self._composed.plain and self._count(scene, stepping, takers)):
+        if not self._count(scene, stepping, takers):
             return judged._replace(clean=judged.clean & ~rest)
         counts = stepping.table[rest, -1]
         # in less room than the most that are divided row by row, C gives up before those end otherwise
         room = min(int(4.0 * np.max(counts, initial=0.0)) + ROOM, MOST // 2)
         composition = self._composed.composition(scene, rows.recording, room)
+        composition.ask()
         composition.struct.count_column = stepping.table.shape[1] - 1
         others = [*varied.others, *numbers_of(composition.named, takers), *composition.settings(takers)]
         with composition.tangents.placed() as composition.struct.tangents:

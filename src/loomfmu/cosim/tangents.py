@@ -202,16 +202,6 @@ class Tangents:
             raise LoomfmuError(f"{scene.name}: the derivative is not finite")
         return Direction(recording, stretch * recording.time, reals, seeds)
 
-    def rates(self, scene: Scene, grid: Grid) -> dict[str, tuple[Floats, Floats]]:
-        """Return the samples of each signal, and their derivatives by the time.
-
-        These are exact where outputs depend on the time and on inputs alone. Held extremes are not searched.
-        """
-        ones = np.ones(grid.steps)
-        with self.placed():
-            rows = self._rows(scene, grid, {}, ones, 0.0 * ones)
-        return {signal: (rows[:, n, 0], rows[:, n, 1]) for n, (signal, _place) in enumerate(self._kept)}
-
     @contextmanager
     def placed(self) -> Iterator[int]:
         """Place components that hold extremes at each time instead of stepping; the plan's address for C."""

@@ -14,10 +14,18 @@ struct asked { /* a question as the rules take it, its words, and the number of 
     int64_t number;
 };
 
+struct recorded { /* the samples of the run itself, and how many numbers are from one to the next */
+    const double *first;
+    int64_t stride;
+};
+
 struct moving { /* of a question: a signal, or what holds its lowest values times a sign */
-    int64_t asked, base, held;
+    int64_t asked, held;
     double sign;
-    int64_t recorded; /* where a run has it among its reals */
+    const dual *values; /* a sample after the other, each `stride` after the one before */
+    int64_t stride;
+    struct recorded recorded;
+    double start, width;    /* of the window of the shaft's angle in which it counts; negative without one */
     const int64_t *windows; /* signals that are all positive where its extremes lie */
     size_t window_count;
 };
@@ -41,17 +49,28 @@ struct composed {
     size_t motion_count;
     const struct latch *latches;
     size_t latch_count;
-    const struct asked *asked;
+    const struct asked *asked; /* for rows alone */
     size_t asked_count;
+    struct recorded run, run_angle; /* times and angles of the shaft */
     const struct tangents *tangents;
+    void (*express)(int64_t); /* computes expressions at so many samples; NULL where there are none */
     struct judges judges;
     double *times, *new_times, *merged_times; /* of samples, for as many as there is room */
     dual *rows, *new_rows, *merged_rows, *starts, *sizes;
     double *lowest, *left;
-    char *doubtful, *own, *inside, *may_be;
-    int64_t room, count_column, parts, rounds;
-    double doubt, narrow, exact, rounded, share; /* see composed.py */
+    char *doubtful, *own, *inside, *may_be, *unsure;
+    int64_t room, count_column, angle, complete; /* the shaft's angle among the signals; whether nothing broke off */
+    double share; /* see composed.py */
 };
+
+enum { PARTS = 8, ROUNDS = 14 };    /* of a step that is divided, and how often: 4e12 parts */
+enum { DOUBTFUL = 1, EDGED = 2 };   /* steps: may hold a worst value, hold an edge of a window */
+static const double NARROW = 1e-12; /* of the run: steps that are divided no more, which may hold a jump */
+/* of the worst and of the largest value: what a cubic, and rounding, may leave */
+static const double EXACT = 1e-11, ROUNDED = 1e-13;
+static const double DOUBT = 0.25; /* of the difference between second rates over a step, see curves.h */
+static const double EDGE = 1e-12; /* rad: what rounding leaves of an edge of a window */
+static const double TURN = 6.283185307179586;
 
 /* All signals at times from 0 on; false where they are not finite. */
 static bool sample_at(const struct composed *composed, int64_t count, const double *times, dual *rows)
@@ -103,11 +122,26 @@ static int64_t merge(const struct composed *composed, int64_t count, int64_t mor
     return merged;
 }
 
-/* Equal steps, and the worst samples of the run: their number, 0 where there is no room. */
-static int64_t first_times(const struct composed *composed, int64_t steps, int64_t samples, const double *times,
-                           const double *reals, size_t real_count)
+/* How far an angle is beyond another one, within a turn. */
+static double beyond(double angle, double other)
 {
-    const double end = times[samples - 1], step = end / (double)steps;
+    return angle - other - TURN * floor((angle - other) / TURN);
+}
+
+static bool is_at(const struct moving *moving, double angle)
+{
+    return moving->width < 0.0 || beyond(angle + EDGE, moving->start) <= moving->width + 2.0 * EDGE;
+}
+
+static double recorded_at(struct recorded recorded, int64_t sample)
+{
+    return recorded.first[sample * recorded.stride];
+}
+
+/* Equal steps, and the worst samples of the run: their number, 0 where there is no room. */
+static int64_t first_times(const struct composed *composed, int64_t steps, int64_t samples)
+{
+    const double end = recorded_at(composed->run, samples - 1), step = end / (double)steps;
     int64_t count = steps + 1;
     if (count + (int64_t)composed->motion_count > composed->room)
         return 0;
@@ -116,87 +150,135 @@ static int64_t first_times(const struct composed *composed, int64_t steps, int64
     composed->times[steps] = end;
     for (size_t place = 0; place < composed->motion_count; place++) {
         const struct moving *moving = &composed->motions[place];
-        int64_t worst = 0;
-        for (int64_t sample = 1; sample < samples; sample++)
-            if (moving->sign * reals[(size_t)sample * real_count + (size_t)moving->recorded] <
-                moving->sign * reals[(size_t)worst * real_count + (size_t)moving->recorded])
-                worst = sample;
-        count = with_time(composed->times, count, times[worst]);
+        double lowest = INFINITY, time = 0.0;
+        for (int64_t sample = 0; sample < samples; sample++) {
+            const double value = moving->sign * recorded_at(moving->recorded, sample);
+            if (value < lowest && is_at(moving, recorded_at(composed->run_angle, sample))) {
+                lowest = value;
+                time = recorded_at(composed->run, sample);
+            }
+        }
+        count = with_time(composed->times, count, time);
     }
     return count;
 }
 
-/* What a signal times a sign does not go below on each step. */
-static void lowest_of(const struct composed *composed, int64_t count, int64_t signal, double sign)
+/* What a motion times a sign does not go below on each step. */
+static void lowest_of(const struct composed *composed, int64_t count, const dual *first, int64_t stride, double sign)
 {
-    const size_t kept = composed->tangents->kept_count;
-    const dual *first = composed->rows + signal;
-    find_lowest(count, composed->doubt, sign, composed->times, &first->value, &first->tangent, (int64_t)(2 * kept),
-                composed->lowest);
+    find_lowest(count, DOUBT, sign, composed->times, &first->value, &first->tangent, 2 * stride, composed->lowest);
 }
 
 /* Mark the steps within which alone a signal may be where its extremes lie. */
 static void mark_hidden(const struct composed *composed, int64_t count, const struct moving *moving)
 {
-    const size_t kept = composed->tangents->kept_count;
+    const int64_t kept = (int64_t)composed->tangents->kept_count;
     memset(composed->inside, 1, (size_t)count);
     memset(composed->may_be, 1, (size_t)count);
     for (size_t window = 0; window < moving->window_count; window++) {
-        const int64_t signal = moving->windows[window];
-        lowest_of(composed, count, signal, -1.0);
+        const dual *first = composed->rows + moving->windows[window];
+        lowest_of(composed, count, first, kept, -1.0);
         for (int64_t place = 0; place < count; place++)
-            composed->inside[place] &= composed->rows[(size_t)place * kept + (size_t)signal].value > 0.0;
+            composed->inside[place] &= first[place * kept].value > 0.0;
         for (int64_t place = 0; place + 1 < count; place++)
             composed->may_be[place] &= -composed->lowest[place] > 0.0;
     }
     for (int64_t place = 0; moving->window_count > 0 && place + 1 < count; place++)
-        composed->own[place] |= composed->may_be[place] && !composed->inside[place] && !composed->inside[place + 1];
+        if (composed->may_be[place] && !composed->inside[place] && !composed->inside[place + 1])
+            composed->own[place] |= DOUBTFUL;
 }
 
 static bool is_wide(const struct composed *composed, int64_t count, int64_t place)
 {
-    return composed->times[place + 1] - composed->times[place] > composed->narrow * composed->times[count - 1];
+    return composed->times[place + 1] - composed->times[place] > NARROW * composed->times[count - 1];
+}
+
+static dual angle_at(const struct composed *composed, int64_t place)
+{
+    const dual none = {0.0, 0.0};
+    const size_t first = (size_t)place * composed->tangents->kept_count;
+    return composed->angle < 0 ? none : composed->rows[first + (size_t)composed->angle];
 }
 
 /* Mark the steps that may hold the worst value of a motion; returns how far that may be off. */
 static double mark_doubtful(const struct composed *composed, int64_t count, const struct moving *moving)
 {
-    const size_t kept = composed->tangents->kept_count;
-    const dual *row = composed->rows + moving->base;
+    const dual *values = moving->values;
     double best = INFINITY, largest = 0.0, left = 0.0;
-    for (int64_t place = 0; place < count; place++, row += kept) {
-        best = moving->sign * row->value < best ? moving->sign * row->value : best;
-        largest = fabs(row->value) > largest ? fabs(row->value) : largest;
+    for (int64_t place = 0; place < count; place++) {
+        const double value = values[place * moving->stride].value;
+        composed->inside[place] = is_at(moving, angle_at(composed, place).value);
+        best = composed->inside[place] && moving->sign * value < best ? moving->sign * value : best;
+        largest = fabs(value) > largest ? fabs(value) : largest;
     }
-    lowest_of(composed, count, moving->base, moving->sign);
-    const double most = composed->exact * fabs(best) + composed->rounded * largest;
+    if (best == INFINITY)
+        return 0.0;
+    lowest_of(composed, count, values, moving->stride, moving->sign);
+    const double most = EXACT * fabs(best) + ROUNDED * largest;
     for (int64_t place = 0; place + 1 < count; place++) {
         const double off = best - composed->lowest[place];
+        const double middle = 0.5 * (angle_at(composed, place).value + angle_at(composed, place + 1).value);
+        if (!is_at(moving, middle))
+            continue;
         if (off > left && is_wide(composed, count, place))
             left = off;
-        composed->own[place] |= off > most;
+        composed->own[place] |= off > most ? DOUBTFUL : 0;
     }
     if (moving->held)
         mark_hidden(composed, count, moving);
     return left > most ? left : most;
 }
 
-/* Mark the steps that may hold the worst value of a question; returns how many. */
-static int64_t doubtful_of(const struct composed *composed, int64_t count, int64_t asked)
+/* The time within a step at which the shaft stands at an angle, as it seems from the nearer end; NaN where that is not inside. */
+static double time_of(const struct composed *composed, int64_t place, double angle)
 {
-    int64_t marked = 0;
+    const dual before = angle_at(composed, place), after = angle_at(composed, place + 1);
+    const double edge = angle + TURN * floor((0.5 * (before.value + after.value) - angle) / TURN + 0.5);
+    const double passed = edge - before.value, ahead = after.value - edge;
+    const double start = composed->times[place], end = composed->times[place + 1];
+    if (!(passed * ahead > 0.0) || fabs(passed) <= EDGE || fabs(ahead) <= EDGE)
+        return NAN;
+    double time = fabs(passed) < fabs(ahead) ? start + passed / before.tangent : end - ahead / after.tangent;
+    if (!(time > start && time < end))
+        time = start + (end - start) * (passed / (passed + ahead));
+    return time > start && time < end ? time : NAN;
+}
+
+/* Add the times within a step at which windows of unsure questions begin and end; returns how many there are with these. */
+static int64_t with_edges(const struct composed *composed, int64_t place, int64_t more)
+{
+    for (size_t motion = 0; motion < composed->motion_count; motion++) {
+        const struct moving *moving = &composed->motions[motion];
+        for (int end = 0; moving->width >= 0.0 && composed->unsure[moving->asked] && end < 2; end++) {
+            const double time = time_of(composed, place, moving->start + end * moving->width);
+            if (isfinite(time))
+                more = with_time(composed->new_times, more, time);
+        }
+    }
+    return more;
+}
+
+/* Mark the steps that may hold the worst value of a question, or an edge of its window; returns whether there are any. */
+static bool mark(const struct composed *composed, int64_t count, int64_t asked)
+{
+    bool marked = false;
     memset(composed->own, 0, (size_t)count);
     composed->left[asked] = 0.0;
-    for (size_t place = 0; place < composed->motion_count; place++) {
-        if (composed->motions[place].asked != asked)
+    for (size_t motion = 0; motion < composed->motion_count; motion++) {
+        const struct moving *moving = &composed->motions[motion];
+        if (moving->asked != asked)
             continue;
-        const double off = mark_doubtful(composed, count, &composed->motions[place]);
+        const double off = mark_doubtful(composed, count, moving);
         composed->left[asked] = off > composed->left[asked] ? off : composed->left[asked];
+        for (int64_t place = 0; moving->width >= 0.0 && place + 1 < count; place++)
+            if (isfinite(time_of(composed, place, moving->start)) ||
+                isfinite(time_of(composed, place, moving->start + moving->width)))
+                composed->own[place] |= EDGED;
     }
     for (int64_t place = 0; place + 1 < count; place++) {
-        composed->own[place] &= is_wide(composed, count, place);
+        composed->own[place] = is_wide(composed, count, place) ? composed->own[place] : 0;
         composed->doubtful[place] |= composed->own[place];
-        marked += composed->own[place];
+        marked |= composed->own[place] != 0;
     }
     return marked;
 }
@@ -204,37 +286,37 @@ static int64_t doubtful_of(const struct composed *composed, int64_t count, int64
 /* The times that divide the marked steps, after 0: their number, 0 where there is no room. */
 static int64_t divided(const struct composed *composed, int64_t count)
 {
+    const int64_t most = PARTS + 2 * (int64_t)composed->motion_count;
     int64_t more = 1;
     composed->new_times[0] = 0.0;
     for (int64_t place = 0; place + 1 < count; place++) {
         const double start = composed->times[place], size = composed->times[place + 1] - start;
-        if (composed->doubtful[place] && count + more + composed->parts > composed->room)
+        if (composed->doubtful[place] && count + more + most > composed->room)
             return 0;
-        for (int64_t part = 1; composed->doubtful[place] && part < composed->parts; part++)
-            composed->new_times[more++] = start + size * ((double)part / (double)composed->parts);
+        for (int64_t part = 1; composed->doubtful[place] & DOUBTFUL && part < PARTS; part++)
+            composed->new_times[more++] = start + size * ((double)part / PARTS);
+        if (composed->doubtful[place] & EDGED)
+            more = with_edges(composed, place, more);
     }
     return more;
 }
 
-/* Divide the steps until the worst values of the wanted questions are found; returns the number of samples, 0 if that fails. */
-static int64_t divide(const struct composed *composed, int64_t count, const char *wanted)
+/* Divide the steps until the worst values of the unsure questions are found, where there is room: the number of samples. */
+static int64_t divide(struct composed *composed, int64_t count)
 {
-    uint64_t unsure = 0;
-    for (size_t asked = 0; asked < composed->asked_count; asked++)
-        unsure |= (uint64_t)(wanted[asked] != 0) << asked;
-    if (count == 0 || !sample_at(composed, count, composed->times, composed->rows))
-        return 0;
+    composed->complete = sample_at(composed, count, composed->times, composed->rows);
     for (int64_t round = 0;; round++) {
+        if (composed->express)
+            composed->express(count);
         memset(composed->doubtful, 0, (size_t)count);
         for (size_t asked = 0; asked < composed->asked_count; asked++)
-            if (unsure >> asked & 1 && doubtful_of(composed, count, (int64_t)asked) == 0)
-                unsure &= ~((uint64_t)1 << asked);
-        if (unsure == 0 || round + 1 == composed->rounds)
-            return count;
+            composed->unsure[asked] = composed->unsure[asked] && mark(composed, count, (int64_t)asked);
         const int64_t more = divided(composed, count);
-        if (more == 0 || !sample_at(composed, more, composed->new_times, composed->new_rows))
-            return 0;
-        count = merge(composed, count, more);
+        if (more == 1 || round + 1 == ROUNDS || !composed->complete)
+            return count;
+        composed->complete = more && sample_at(composed, more, composed->new_times, composed->new_rows);
+        if (more)
+            count = merge(composed, count, more);
     }
 }
 
@@ -250,4 +332,15 @@ static void hold_extremes(const struct composed *composed, int64_t count)
             latch->values[sample] = latch->sign * lowest;
         }
     }
+}
+
+/* Place samples that show the worst values of the wanted questions on a run of so many samples, from equal steps on; returns how
+ * many there are, 0 where there is no room for the first of them. */
+EXPORT int64_t compose(struct composed *composed, int64_t steps, int64_t samples, const char *wanted)
+{
+    int64_t count = first_times(composed, steps, samples);
+    memcpy(composed->unsure, wanted, composed->asked_count);
+    count = count ? divide(composed, count) : 0;
+    hold_extremes(composed, count);
+    return count;
 }

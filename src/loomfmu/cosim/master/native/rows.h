@@ -57,7 +57,7 @@ struct rows {
     int32_t *integers;
     size_t integer_count;
     struct judges judges;
-    const struct composed *composed; /* NULL where nothing is judged so */
+    struct composed *composed; /* NULL where nothing is judged so */
     int64_t verdicts;
     const int32_t *interrupted;
     double *experiment; /* its start and its end */
@@ -247,14 +247,12 @@ static bool judge_row(const struct rows *rows, int64_t row, struct found *found)
 /* Judge what follows from the time alone; false as above, and where it takes more samples than there is room for. */
 static bool compose_row(const struct rows *rows, int64_t row, int64_t steps, struct found *found)
 {
-    const struct composed *composed = rows->composed;
+    struct composed *composed = rows->composed;
     const struct judges *judges = &composed->judges;
-    const int64_t first = first_times(composed, steps, rows->steps + 1, rows->times, rows->real_rows, rows->real_count);
     const char *wanted = found->exact + (size_t)row * composed->asked_count;
-    const int64_t count = divide(composed, first, wanted);
-    if (count == 0)
+    const int64_t count = compose(composed, steps, rows->steps + 1, wanted);
+    if (count == 0 || !composed->complete)
         return false;
-    hold_extremes(composed, count);
     judges->renew(judges->run, (ptrdiff_t)count);
     for (size_t place = 0; place < composed->asked_count; place++) {
         const struct asked *asked = &composed->asked[place];

@@ -109,7 +109,7 @@ static double least(double one, double other) /* NaN if one of them is */
 
 /* Finds what a motion, times a sign, does not go below on each step: its cubic, less the share `doubt` of the difference
  * between its second rates and those of the samples of its rates, of which there are three at least. */
-EXPORT void find_lowest(int64_t count, double doubt, double sign, const double *time, const double *values,
+static void find_lowest(int64_t count, double doubt, double sign, const double *time, const double *values,
                         const double *rates, int64_t stride, double *lowest)
 {
     double bends[2] = {0.0, sign * bend(count, time, rates, stride, 0)};
