@@ -34,6 +34,7 @@ from .terminals import HEAD
 
 # Time [s] and shaft angle [rad] below which two samples are one: their squares would underflow
 SHORTEST = 1e-15
+NEAREST = 1e-9  # share of a way below which golden sections no longer part two places
 MARGIN, LIMIT, DEFLECTION = 0, 1, 2  # of which an extreme is searched
 
 
@@ -336,6 +337,10 @@ class BeltMonitor(ShaftDriven):
         place = low + quarter * at
         if nearest - (farthest - nearest) >= bar:
             return nearest, place
+        if at == 0 or at == 4:
+            inward = NEAREST * (high - low) if at == 0 else NEAREST * (low - high)
+            if self.shape_at(which, way, place + inward) >= nearest:  # it rises from the end
+                return nearest, place
         left = low + quarter * (at - 1) if at > 0 else low
         right = low + quarter * (at + 1) if at < 4 else high
         value, share = self.golden(which, way, left, right)
