@@ -11,6 +11,7 @@ from pathlib import Path
 
 MOST_SHOWN = 16  # names that a message lists
 MOST_LETTERS = 60  # of a value that a message shows
+SLIP, DISTANT = 0.85, 0.5  # likeness of two names: one is the other with a letter wrong, or reminds of it
 LONGEST_LINE = 2000  # characters of a message
 LONGEST_NAME = 1000  # characters of a title, a name or a path
 FORBIDDEN = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")  # characters in XML 1.0
@@ -115,13 +116,13 @@ def numbered(names: Sequence[str], numbers: Iterable[int]) -> str:
     return listed((f"{number} ({name})" for number, name in zip(numbers, names, strict=True)), "or")
 
 
-def misspelt(name: str, known: Iterable[str]) -> list[str]:
+def misspelt(name: str, known: Iterable[str], likeness: float = 0.75) -> list[str]:
     """The known name that differs from this one by a slip of spelling, if there is one."""
     import difflib  # most runs have no such error
 
     if len(name) > MOST_LETTERS:  # far from any name, and slow to compare
         return []
-    return difflib.get_close_matches(name, known, n=1, cutoff=0.75)
+    return difflib.get_close_matches(name, known, n=1, cutoff=likeness)
 
 
 def suggestion(name: str, known: Iterable[str], descriptions: Mapping[str, str] | None = None) -> str:
@@ -131,16 +132,24 @@ def suggestion(name: str, known: Iterable[str], descriptions: Mapping[str, str] 
     "; did you mean 'speed'?"
     >>> suggestion("zeta", ["law", "reduction"], {"reduction": "Share of the speed taken off, zeta"})
     "; did you mean 'reduction'?"
+    >>> suggestion("initial_speed", ["point_speed_8", "speed"])
+    "; did you mean 'speed'?"
     """
-    import difflib  # most runs have no such error
-
     known = list(known)
     if len(name) > MOST_LETTERS:  # far from any name, and slow to compare
         return ""
     word = re.compile(rf"\b{re.escape(name)}\b", re.IGNORECASE)
     described = [each for each, text in (descriptions or {}).items() if name and word.search(text)]
+    words = name.lower().split("_")
+    within = [each for each in known if set(each.lower().split("_")) <= set(words)]
     # a slip of spelling first, then a word that was meant, then a distant likeness
-    near = misspelt(name, known) or described or difflib.get_close_matches(name, known, n=1, cutoff=0.5)
+    near = (
+        misspelt(name, known, SLIP)
+        or sorted(within, key=len, reverse=True)
+        or misspelt(name, known)
+        or described
+        or misspelt(name, known, DISTANT)
+    )
     if near:
         return f"; did you mean {near[0]!r}?"
     shown = ", ".join(known[:MOST_SHOWN]) + (", ..." if len(known) > MOST_SHOWN else "")

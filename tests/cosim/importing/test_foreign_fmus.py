@@ -241,6 +241,8 @@ def test_arrays_are_set_wired_and_recorded(tmp_path: Path, isolated: bool) -> No
     ("text", "said"),
     [
         ("u = [1, 2, 3]\n", "one.u is an array up to [2,2]: 4 values, not 3"),
+        ("u_3_1 = 1\n", "one.u_3_1 is unknown: the array ends with u[2,2]"),
+        ('"u[3,1]" = 1\n', "one.u[3,1] is unknown: the array ends with u[2,2]"),
         ("u = [1, 2, 3, true]\n", "one.u_2_2: True is not a quantity such as"),
         ("u = [[1, 2, 3], [4]]\n", "one.u is an array up to [2,2]: write it row by row"),
         ('[wires]\n"one.u" = "one.table"\n', "wire one.table -> one.u: 2 values for 4"),

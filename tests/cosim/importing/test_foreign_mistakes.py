@@ -109,6 +109,7 @@ TEXTS = {
     MOTOR + '"flange.w" = 1\n': "motor.flange.w is an output of Motor and cannot be set",
     MOTOR + 'J = "2 m"\n': "motor.J: '2 m' is in m, which does not fit kg.m2",
     MOTOR + "J = -11\n": "motor.J = -11 kg.m2 is outside [-10, inf] kg.m2",
+    MOTOR + "J = nan\n": "motor.J = nan is not a finite number",
     MOTOR + 'component = "MainShaft"\n': "motor has both a component and an fmu; keep one of them",
     LENGTH + "[motor]\nfmu = 5\n": "motor.fmu = 5 is not a name in quotes",
     LENGTH + '[motor]\nfmu = "no.fmu"\n': "no.fmu: there is no such FMU",

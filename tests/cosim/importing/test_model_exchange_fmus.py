@@ -144,6 +144,14 @@ def test_errors_do_not_add_up_from_step_to_step(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(find_spec("ziglang") is None, reason="ziglang is not installed: no native FMU")
 @pytest.mark.parametrize("fmi", [2, 3])
+def test_a_state_starts_with_the_value_that_is_given(tmp_path: Path, fmi: int) -> None:
+    path = exchanged(tmp_path, "DAHLQUIST", fmi)  # linear: all values are three times as large
+    usual, given = (np.asarray(solved(path, more).trace["it.h"]) for more in ("", "h = 3.0\n"))
+    assert given[0] == 3.0
+    np.testing.assert_allclose(given, 3.0 * usual, rtol=1e-5)  # tolerance 1e-6 for each of the two
+
+
+@pytest.mark.parametrize("fmi", [2, 3])
 @pytest.mark.parametrize("name", ["DobbyDrive", "DetachingRoller"])
 def test_ours_give_what_they_give_in_co_simulation(tmp_path: Path, name: str, fmi: int) -> None:
     """They refuse every call in a mode that the standard does not allow it in."""

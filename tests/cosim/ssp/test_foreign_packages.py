@@ -189,13 +189,23 @@ def test_duration_step_and_values_can_be_set(tmp_path: Path) -> None:
     assert again.scene.steps == 200 and again.scene.instances["drive_motor"].values["J"] == 0.5
 
 
+def test_a_set_in_the_structure_has_the_units_of_the_structure(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    own = '<ssc:Unit name="turns"><ssc:BaseUnit rad="1" s="-1" factor="6.25"/></ssc:Unit>'
+    with_units = STRUCTURE.replace("<ssd:DefaultE", f"<ssd:Units>{own}</ssd:Units><ssd:DefaultE")
+    monkeypatch.setitem(globals(), "STRUCTURE", with_units)
+    result = ran(tmp_path, more=parameter("w_free", "Real", 'value="8" unit="turns"'))
+    assert result.scene.instances["drive_motor"].values["w_free"] == 50.0
+
+
 def test_what_names_no_variable_is_left_out_and_told(tmp_path: Path) -> None:
     given = (("gain", "Real"), ("label", "String"), ("flange.phi", "Real"))
     more = "".join(parameter(name, kind, 'value="3"') for name, kind in given)
     assert ran(tmp_path, more=more).warnings == (
         "drive_motor.gain of the package is ignored: Motor has no such variable",
         "drive_motor.label of the package is ignored: it is a text",
-        "drive_motor.flange.phi of the package is ignored: it is neither a parameter nor an input",
+        "drive_motor.flange.phi of the package is ignored: its FMU computes it",
     )
 
 

@@ -257,6 +257,9 @@ def _port(variable: Any, name: str, rates: dict[str, str], definitions: dict[str
         definition=unit.definition if unit else None,
         relative=bool(said("relativeQuantity")),
         nominal=_limit(kind, said("nominal")),
+        exact=variable.causality in ("output", "local")
+        and variable.initial == "exact"
+        and variable.variability != "constant",
     )
 
 

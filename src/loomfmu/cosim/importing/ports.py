@@ -41,6 +41,7 @@ class Port:
     `name` is what scenes and traces call it: letters, digits and _. `own` is the FMU's own name for it,
     `base_type` its type there.
     `relative` says that it is a difference, as of temperatures: its unit has no offset.
+    `exact` says that it starts with a value that may be given, as a state does that is an output.
     `beside` are the outputs that say more of it. `inner` is a local that a scene records as it does outputs.
     `array` is the FMU's name of the array that it is an element of; then `reference` has its number, too.
     """
@@ -66,8 +67,14 @@ class Port:
     relative: bool = False
     nominal: float | None = None
     beside: Beside = ALONE
+    exact: bool = False
     inner: bool = False
     array: str = ""
+
+    @property
+    def settable(self) -> bool:
+        """Return whether its value, or the one that it starts with, may be given."""
+        return self.causality in ("parameter", "input") or self.exact
 
     @property
     def stated(self) -> Stated | None:
@@ -166,8 +173,10 @@ class Port:
         if self.numbers and value not in self.numbers:
             found = shown(value) if isinstance(value, int) else f"{value:.7g}"
             raise LoomfmuError(f"{where} = {found} must be {numbered(self.choices, self.numbers)}")
+        if value != value or abs(value) == math.inf:  # an integer may be too large for `isfinite`
+            raise LoomfmuError(f"{where} = {value} is not a finite number")
         low, high = self.range
-        if not low <= value <= high or abs(value) == math.inf:
+        if not low <= value <= high:
             factor = units.unit(self.display).factor
             unit = self.unit if self.display == "1" else self.display
             label = "" if unit == "1" else f" {unit}"

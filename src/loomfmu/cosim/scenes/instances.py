@@ -11,7 +11,7 @@ from ...declaring.variables import AT_STEP_END, Variable
 from ...errors import LONGEST_NAME, LoomfmuError, shown, suggestion
 from ...own.declared import FILES, ISOLATED, PARAMETER_SETS
 from ..importing.facts import facts_of
-from ..importing.fmus import Fmu, Port, Value
+from ..importing.fmus import Fmu, Value
 from ..standard import standard
 from .settings import KEYS, truth
 
@@ -74,20 +74,28 @@ class Instance:
             self.fmu = self.fmu.with_tolerance(given, f"{self.name}.{key}")
             return
         if name not in self.fmu.ports:
-            settable = {port.name: port.description for port in self.fmu.ports.values() if _can_be_set(port)}
+            settable = {port.name: port.description for port in self.fmu.ports.values() if port.settable}
             extra = PARAMETER_SETS if self.fmu.built else (*FILES, TOLERANCE)
             hint = suggestion(key, [*settable, *extra, ISOLATED], settable)
+            if last := self._last_element(key):
+                hint = f": the array ends with {last}"
             if key in KEYS:
                 hint = f": {key} belongs to the scene, write it above the first [table]"
             raise LoomfmuError(f"{self.name}.{key} is unknown{hint}")
         port = self.fmu.ports[name]
-        if not _can_be_set(port):
+        if not port.settable:
             kinds = {"output": "an output", "structuralParameter": "a structural parameter"}
             kind = kinds.get(port.causality, "a state")
             raise LoomfmuError(f"{self.name}.{key} is {kind} of {self.fmu.name} and cannot be set")
         where = f"{self.name}.{key}"
         self.values[name] = port.value(given, where)
         self.doubts[where] = port.doubt(given, where)
+
+    def _last_element(self, key: str) -> str:
+        """The last element of the array that a name would be an element of; empty where there is none."""
+        array = re.match(r"(.*?)(\[[\d,]*\]|(_\d+)+)$", key)
+        elements = self.fmu.elements(array[1]) if array else []
+        return elements[-1].own if elements else ""
 
     def _publish(self, kind: str, given: Any) -> None:
         """Take all that a published machine or head gives this component."""
@@ -209,7 +217,7 @@ class Instance:
 
     def _fed_start(self, name: str, fed: Collection[str]) -> Value | None:
         port = self.fmu.ports.get(name)
-        if port is None or not _can_be_set(port) or name in fed:
+        if port is None or not port.settable or name in fed or (port.exact and name not in self.values):
             return None
         start = self.start(name)
         return None if start is None else TYPES[port.kind](start)
@@ -240,10 +248,6 @@ def _has_shape(given: Any, shape: Sequence[int]) -> bool:
     if not shape or not isinstance(given, list):
         return not shape and not isinstance(given, list)
     return len(given) == shape[0] and all(_has_shape(each, shape[1:]) for each in given)
-
-
-def _can_be_set(port: Port) -> bool:
-    return port.causality in ("parameter", "input")
 
 
 # ---- names

@@ -141,10 +141,11 @@ class _Reader:
         passing: Mapping[Node, Stated | None],
     ) -> dict[str, list[Given]]:
         """The values of each instance in the order they are set: those of outer systems last."""
-        values = {name: list(bound(each.element, self.package.root)) for name, each in found.items()}
+        given_in = partial(bound, read=self.package.root, units=self.units)
+        values = {name: list(given_in(each.element)) for name, each in found.items()}
         dotted = {".".join(each.path): name for name, each in found.items()}
         for path, element in reversed(list(systems(system))):  # the outermost last: it prevails
-            for given in bound(element, self.package.root):
+            for given in given_in(element):
                 taken = _in_component(path, given, dotted) or self._by_wires(path, given, passing, nets)
                 for name, value in taken:
                     values[name].append(value)

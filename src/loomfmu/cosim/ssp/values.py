@@ -1,12 +1,12 @@
 """The parameter values of a system package: sets, prefixes, mappings and units."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from xml.etree.ElementTree import Element
 
 from ... import units
 from ...errors import LoomfmuError, shown
-from ..importing.conversions import SAME, Linear, Stated, stated
+from ..importing.conversions import SAME, Definition, Linear, Stated, stated
 from ..importing.fmus import Port
 from ..scenes.instances import Instance
 from .xml import full, read_units, required, suppressed, transformed
@@ -39,15 +39,18 @@ class Given:
         return self.transformation(value)
 
 
-def bound(element: Element, read: Read) -> Iterator[Given]:
-    """The values that the bindings of a component or a system give, later ones before earlier."""
+def bound(element: Element, read: Read, units: Mapping[str, Definition]) -> Iterator[Given]:
+    """The values that the bindings of a component or a system give, later ones before earlier.
+
+    `units` are those of the structure, which sets that stand in it may use.
+    """
     for binding in element.iterfind(f"{full('ssd:ParameterBindings')}/{full('ssd:ParameterBinding')}"):
         inline = binding.find(f"{full('ssd:ParameterValues')}/{full('ssv:ParameterSet')}")
         source = binding.get("source")
         parameters = inline if inline is not None else read(source or "")
         targets = _mapping(binding, read)
         prefix = binding.get("prefix", "")
-        for given in _values(parameters):
+        for given in _values(parameters, units if inline is not None else {}):
             name = prefix + given.name
             if not targets:
                 yield replace(given, name=name)
@@ -55,8 +58,8 @@ def bound(element: Element, read: Read) -> Iterator[Given]:
                 yield replace(given, name=target, transformation=made, unit=None if kept else given.unit)
 
 
-def _values(parameters: Element) -> Iterator[Given]:
-    definitions = read_units(parameters.iterfind(full("ssv:Units")))
+def _values(parameters: Element, units: Mapping[str, Definition]) -> Iterator[Given]:
+    definitions = {**units, **read_units(parameters.iterfind(full("ssv:Units")))}
     for parameter in parameters.iterfind(f"{full('ssv:Parameters')}/{full('ssv:Parameter')}"):
         for value in parameter:
             kind = value.tag.rpartition("}")[2]
@@ -102,8 +105,8 @@ def apply(instance: Instance, given: Given, unitless: list[str]) -> str:
         text = given.kind in ("String", "Binary")
         reason = "it is a text" if text else f"{instance.fmu.name} has no such variable"
         return f"{where} of the package is ignored: {reason}"
-    if port.causality not in ("parameter", "input"):
-        return f"{where} of the package is ignored: it is neither a parameter nor an input"
+    if not port.settable:
+        return f"{where} of the package is ignored: its FMU computes it"
     instance.values[port.name] = port.value(_value(port, given, where), where)
     if given.unit and given.unit.name != "1" and port.kind == "Real" and port.stated is None:
         unitless.append(f"{instance.name}.{port.name} in {given.unit.name}")
