@@ -48,6 +48,13 @@ def test_the_derivative_of_an_expression_is_that_of_the_closed_form() -> None:
     assert found.si[0] == pytest.approx([-1.96, 0.0], abs=1e-6)
 
 
+def test_the_highest_value_of_an_expression_is_derived() -> None:
+    text = "highest heald_1.lift - heald_2.lift / 2"  # 98 mm where the other frame stands at 0
+    found = loomfmu.gradient(scene(), of=text, by=["heald_1.stroke", "heald_2.stroke"])
+    assert found.numbers == pytest.approx([0.098], abs=1e-12)
+    assert found.si[0] == pytest.approx([1.0, 0.0], abs=1e-6)
+
+
 def test_a_small_difference_is_near_a_bound_of_0_by_the_size_of_its_signals() -> None:
     """So a sweep estimates its error: it is far above 1 % of the difference itself."""
     differ = ("differ", "above", "heald_1.lift - 1.0000001 * heald_1.lift", "0 mm")

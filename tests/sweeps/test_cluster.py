@@ -103,6 +103,7 @@ def test_a_scheduler_that_does_not_answer_is_named(
         assert main(arguments) == 2
         errors = capsys.readouterr().err
         assert f"loomfmu: {address}: no dask scheduler answers (" in errors.splitlines()[-1]
+        assert not Path("out").exists()
 
 
 def test_a_scheduler_without_workers_is_named(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -192,7 +192,7 @@ def test_a_full_disk_is_told_with_the_files_name_and_leaves_no_lock(
     with monkeypatch.context() as patched:
         patched.setattr("loomfmu.sweeps.directory.os.write", full)
         refused(plan, r"lock: cannot be written \(No space left on device\)")
-    assert os.listdir(RESULTS) == []
+    assert not RESULTS.exists()
 
 
 HOLDER = """

@@ -63,7 +63,7 @@ class Pattern:
         self.scene, self.claims, self._requested = requested.scene, requested.claims, requested
         deciding = {number: requested.decider(claim) for number, claim in enumerate(self.claims)}
         # a yes-or-no output is as sure as the number whose sign it is, which is estimated with the claims
-        deciders = {number: measure(signal) for number, signal in deciding.items() if signal}
+        deciders = {number: measure(signal, requested.unit) for number, signal in deciding.items() if signal}
         self._all = [*self.claims, *measures, *deciders.values()]
         if self._all:
             judging.library()  # before the run, which could not be judged without
@@ -389,7 +389,7 @@ class Prepared:
         return Prepared, (self.scene, None, self._flavour, self._values, self._measures)
 
     def _new(self, asked: Requested) -> Pattern:
-        return Pattern(asked, self._values, list(map(measure, self._measures)))
+        return Pattern(asked, self._values, [measure(each, asked.unit) for each in self._measures])
 
     def _ready(self, given: dict[str, Any] | None) -> tuple[Pattern, Scene]:
         """Return pattern and scene for these values. Raises LoomfmuError for a value that is not possible."""

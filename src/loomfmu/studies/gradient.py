@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from .. import units
 from ..cosim.claims.claims import name_of
+from ..cosim.claims.expressions import is_expression
 from ..cosim.claims.measures import signal_in
 from ..cosim.prepared import Prepared
 from ..cosim.reading import requested
@@ -83,8 +84,8 @@ def gradient(
     Args:
         scene, set: as for `run`
         of: names of claims, whose distances from the bound are derived, and signals: one that holds an
-            extreme by its name, others as "highest belt.deflection", "lowest ...",
-            "mean ..." or "... at 90 deg"
+            extreme by its name, others as "highest belt.deflection", "lowest ..." (both also of an
+            expression), "mean ..." or "... at 90 deg"
         by: parameters of our components, such as "shaft.speed"; of and by may be one name or several
 
     Raises:
@@ -103,7 +104,7 @@ def gradient(
     measures = [each for each in of if each not in claims]
     for each in measures:
         signal = signal_in(each)
-        if "." not in signal or signal.partition(".")[0] not in base.instances:
+        if not is_expression(signal) and signal.partition(".")[0] not in base.instances:
             raise LoomfmuError(f"of {shown(each)} is neither a claim nor a signal{suggestion(each, claims)}")
     with Prepared(base, None, "native", (), measures) as loom:
         parameters = [_parameter(loom, key) for key in by]

@@ -17,6 +17,10 @@ LOCK = "lock"
 PARTIAL = r"\..*\.partial"  # names of files that are being written
 
 
+class Refused(LoomfmuError):
+    """A search that cannot be carried out, as its first runs show."""
+
+
 Names = tuple[Path, str]  # a folder, and a regular expression of names in it
 
 
@@ -52,6 +56,8 @@ def owned(
 ) -> Iterator[None]:
     """Have a directory alone, with what this `kind` of study finished before. None of `inputs` is written.
 
+    A study that is refused, or fails before anything is finished, leaves nothing behind.
+
     Raises:
         LoomfmuError: another one is there, finished or not, or is running there now
     """
@@ -62,12 +68,22 @@ def owned(
     for folder in contents.folders:
         if folder.is_symlink():  # what lies behind it is not ours to write and to delete
             raise LoomfmuError(f"{folder}: cannot be written (it is a symbolic link)")
+    made = [each for each in (directory, *directory.parents) if not each.exists()]
     directory.mkdir(parents=True, exist_ok=True)
-    with _locked(directory, kind):
-        _check_identity(contents, identity, kind, title, fingerprint, restart)
-        for path in contents.partial():
-            path.unlink(missing_ok=True)
-        yield
+    try:
+        with _locked(directory, kind):
+            _check_identity(contents, identity, kind, title, fingerprint, restart)
+            for path in contents.partial():
+                path.unlink(missing_ok=True)
+            try:
+                yield
+            except LoomfmuError as error:
+                if isinstance(error, Refused) or not any(each.stat().st_size for each in contents.results()):
+                    _delete(contents, identity)
+                raise
+    except LoomfmuError:
+        _delete_empty([*contents.folders, *made] if made else [])
+        raise
 
 
 def _check_identity(
@@ -81,9 +97,8 @@ def _check_identity(
             f"{contents.directory}: contains files that no loomfmu {kind} wrote ({foreign.name});"
             " choose another directory with --output"
         )
-    if restart:  # the identity last: what a kill leaves over is still known
-        for each in [*contents.results(), *contents.partial(), path]:
-            each.unlink(missing_ok=True)
+    if restart:
+        _delete(contents, path)
     elif known not in (None, fingerprint):
         raise LoomfmuError(
             f"{contents.directory}: contains another {kind}, or the {kind}, its scene, an FMU or loomfmu has"
@@ -92,6 +107,19 @@ def _check_identity(
     if restart or known is None:
         content = {"title": title, "fingerprint": fingerprint}
         replace_file(path, (json.dumps(content, indent=1) + "\n").encode())
+
+
+def _delete(contents: Contents, identity: Path) -> None:
+    """Delete its files, the identity last: what a kill leaves over is still known."""
+    for each in [*contents.results(), *contents.partial(), identity]:
+        each.unlink(missing_ok=True)
+
+
+def _delete_empty(folders: Iterable[Path]) -> None:
+    """Delete folders that have nothing in them."""
+    for each in folders:
+        with contextlib.suppress(OSError):
+            each.rmdir()
 
 
 def _known(path: Path) -> str | None:

@@ -313,6 +313,17 @@ def test_a_goal_of_a_signal_is_spelt_and_has_an_error() -> None:
     assert 0.0 < error < 1e-4 * abs(found.goal)
 
 
+def test_a_goal_may_be_the_highest_value_of_an_expression() -> None:
+    """The frames stand at 98 mm and at 0, then at 0 and at their stroke: half of 98 mm is less than 90."""
+    text = """minimise = "highest abs(heald_1.lift / 2 - heald_2.lift)"
+[ranges]
+"heald_2.stroke" = ["90 mm", "98 mm"]"""
+    found = searched(text)
+    assert found.goal == pytest.approx(0.09, rel=1e-9)
+    (error,) = found.front[0].errors
+    assert 0.0 < error < 1e-9
+
+
 def test_whole_numbers_may_vary() -> None:
     text = 'maximise = "damper.thread_count"\n[ranges]\n"damper.thread_count" = [0, 4000]'
     scene = SIMS / "damper.toml"

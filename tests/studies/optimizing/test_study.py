@@ -61,6 +61,12 @@ def test_what_varies_and_what_is_wanted() -> None:
         (f"minimise = 'highst heald_1.acceleration'\n{SPEED}",
          "minimise: 'highst heald_1.acceleration' is not one of 'highest SIGNAL', 'lowest SIGNAL'"),
         (f"minimise = 'heald_1.acceleration at 90 mm'\n{SPEED}", "'90 mm' is in mm, which does not fit rad"),
+        (f"minimise = 'mean 2 * heald_1.lift'\n{SPEED}",
+         "minimise: 'mean 2 * heald_1.lift': of an expression, write 'highest ...' or 'lowest ...'"),
+        (f"minimise = 'highest heald_1.lift + 1'\n{SPEED}",
+         "minimise = 'heald_1.lift + 1' has heald_1.lift in m beside 1 in a number without a unit"),
+        (f"minimise = 'highest heald_1.lit - heald_2.lift'\n{SPEED}",
+         "minimise: heald_1 has no output 'lit'; did you mean 'lift'?"),
         ("minimise = 'highest shaft.speed'\n[ranges]\n'heald.stroke' = ['90 mm', '98 mm']",
          "shaft.speed is a parameter; put it into [ranges]"),
         (f"maximise = ['shaft.speed', 'shaft.speed']\n{SPEED}", "maximise: shaft.speed is already a goal"),
@@ -115,6 +121,7 @@ def test_what_changes_nothing_or_cannot_be_run_is_refused(text: str, said: str) 
     with pytest.raises(LoomfmuError) as caught:
         searched(f"{GOAL}{SPEED}{text}")
     assert said in str(caught.value) and str(caught.value).startswith("study.toml: ")
+    assert not Path("results").exists(), "the next study would be refused as another one"
 
 
 def test_the_scene_is_named_as_the_study_is() -> None:

@@ -17,7 +17,7 @@ from ...traces import Signals
 from ...traces.extended import Extended
 from ...traces.signals import Floats
 from ...traces.verdict import place_text
-from .expressions import Expression, Node, known_as
+from .expressions import Expression, Node
 
 Jet = list[Floats]  # values, then rates and second rates as far as they are known
 RATES = "rate of ", "second rate of "
@@ -32,7 +32,7 @@ class Expressed(Extended):
 
     def __init__(self, run: Signals, expression: Expression):
         super().__init__(run, {}, {}, expression.unit)
-        self._node, self._display, self.why = expression.node, self._shown_in(expression), ""
+        self._node, self._display, self.why = expression.node, expression.display(run.display), ""
         with np.errstate(over="ignore", invalid="ignore"):  # the verdict says what is not finite
             values, *rates = self._jet(self._node)
         names = [str(expression), *(f"{each}{expression}" for each in RATES)]
@@ -142,12 +142,6 @@ class Expressed(Extended):
             self._made[found["error"]] = self._off(self._node, off)[1]
         return found
 
-    def _shown_in(self, expression: Expression) -> str:
-        """Return the unit that people read it in: that of the first signal of its kind."""
-        dimension = known_as(expression.node.dimension)
-        alike = (each for each in _all_signals(expression.node) if each.dimension == dimension)
-        return next((self._run.display(each.text) for each in alike), expression.unit)
-
     def beside(self, signal: str, role: str) -> str | None:
         """The signal that says more of this one in a role of `Beside`, if there is one."""
         if signal == next(iter(self._made)):
@@ -181,8 +175,3 @@ def _may_pass_zero(time: Floats, jet: Jet) -> bool:
     third, (values, rates, *_more) = np.diff(time) / 3.0, jet
     points = np.array([values[:-1], values[:-1] + third * rates[:-1], values[1:] - third * rates[1:]])
     return bool(np.any(np.sign(points) != np.sign(values[0])))
-
-
-def _all_signals(node: Node) -> list[Node]:
-    own = [node] if node.kind == "signal" else []
-    return [*own, *(each for part in node.parts for each in _all_signals(part))]

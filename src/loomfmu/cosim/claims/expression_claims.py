@@ -124,12 +124,12 @@ def _float(exact: Fraction) -> float:
     return found
 
 
-class _AboveExpression(_OfExpression, Above, kind=False):
+class AboveExpression(_OfExpression, Above, kind=False):
     """An expression stays at or above a bound."""
 
 
-class _BelowExpression(_OfExpression, Below, kind=False):
+class BelowExpression(_OfExpression, Below, kind=False):
     """An expression stays at or below a bound."""
 
 
-of_expression: dict[str, type[_OfExpression]] = {"above": _AboveExpression, "below": _BelowExpression}
+of_expression: dict[str, type[_OfExpression]] = {"above": AboveExpression, "below": BelowExpression}

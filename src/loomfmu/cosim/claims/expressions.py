@@ -165,6 +165,12 @@ class Expression(str):
         found.node, found.unit = node, unit
         return found
 
+    def display(self, display_of: Callable[[str], str]) -> str:
+        """The unit that people read it in: that of the first signal of its kind, as `display_of` gives it."""
+        dimension = known_as(self.node.dimension)
+        alike = (each.text for each in _all_signals(self.node) if each.dimension == dimension)
+        return next(map(display_of, alike), self.unit)
+
     def cases(self, sense: int) -> list["Expression"]:
         """Smooth expressions, see `Node.cases`; itself if there are none, or too many."""
         found = self.node.cases(sense)
@@ -186,6 +192,11 @@ def read(text: str, unit_of: UnitOf, where: str) -> Expression:
     if not node.signals:
         raise LoomfmuError(f"{where} = {shown(text)} has no signal in it")
     return Expression.made(node, text, name)
+
+
+def _all_signals(node: Node) -> list[Node]:
+    own = [node] if node.kind == "signal" else []
+    return [*own, *(each for part in node.parts for each in _all_signals(part))]
 
 
 def _exact(unit: units.Unit) -> Fraction:

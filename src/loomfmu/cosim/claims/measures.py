@@ -5,6 +5,7 @@ Each is a claim without a bound: its verdict has the number as the worst value, 
 
 import math
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -13,13 +14,16 @@ from ... import units
 from ...errors import LoomfmuError
 from ...traces import Signals, Verdict
 from .arguments import Name, Quantity, argument
-from .bounded import Above, Below
+from .bounded import Above, Below, Bounded
 from .claim import Claim
+from .expression_claims import AboveExpression, BelowExpression
+from .expressions import UnitOf, is_expression
+from .expressions import read as read_expression
 from .judging import Form, Question, needs_shaft, run_of
 from .movers import Wired
 
 FORMS = "'highest {0}', 'lowest {0}', 'mean {0}' or '{0} at 90 deg'"
-_FORM = re.compile(r"(?:(highest|lowest|mean)\s+)?([^\s]+)(?:\s+at\s+(.+))?")
+_FORM = re.compile(r"(?:(highest|lowest|mean)\s+)?(.+?)(?:\s+at\s+(.+))?")
 
 
 class Measure(Claim, kind=False):
@@ -32,7 +36,7 @@ class Measure(Claim, kind=False):
 
     def question(self, trace: Signals) -> Question:
         value, time = self.of(trace)
-        value = value if _known(trace, self.signal) else math.nan
+        value = value if _known(trace, [self.signal]) else math.nan
         form = Form("", self.signal, (trace.unit(self.signal), trace.display(self.signal)), self.sense)
         return Question("given", [form], [self.signal], [0.0, value, time, 1.0])
 
@@ -41,20 +45,34 @@ class Measure(Claim, kind=False):
         raise NotImplementedError
 
 
-class Highest(Below, kind=False):
-    """The highest value of a signal, between the samples, too."""
+class _Extreme(Claim, kind=False):
+    """The highest or lowest value of a signal or an expression, between the samples, too."""
 
     def judge(self, trace: Signals) -> Verdict:
         found = super().judge(trace)
-        return found if _known(trace, self.signal) else replace(found, worst=math.nan)
+        return found if _known(trace, self.signals(trace)) else replace(found, worst=math.nan)
 
 
-class Lowest(Above, kind=False):
-    """The lowest value of a signal, between the samples, too."""
+class _Highest(_Extreme, Below, kind=False):
+    """The highest value of a signal."""
 
-    def judge(self, trace: Signals) -> Verdict:
-        found = super().judge(trace)
-        return found if _known(trace, self.signal) else replace(found, worst=math.nan)
+
+class _Lowest(_Extreme, Above, kind=False):
+    """The lowest value of a signal."""
+
+
+class _HighestOfExpression(_Extreme, BelowExpression, kind=False):
+    """The highest value of an expression."""
+
+
+class _LowestOfExpression(_Extreme, AboveExpression, kind=False):
+    """The lowest value of an expression."""
+
+
+EXTREMES: dict[str, tuple[type[Below | Above], type[BelowExpression | AboveExpression]]] = {
+    "highest": (_Highest, _HighestOfExpression),
+    "lowest": (_Lowest, _LowestOfExpression),
+}
 
 
 class Mean(Measure, kind=False):
@@ -96,31 +114,34 @@ class Held(Measure, kind=False):
         return float(values[-1]), math.nan
 
 
-def _known(trace: Signals, signal: str) -> bool:
-    """Return whether a signal is known throughout the run."""
-    flag = trace.validity(signal)
-    return flag is None or bool(np.all(trace[flag]))
+def _known(trace: Signals, signals: Sequence[str]) -> bool:
+    """Return whether signals are known throughout the run."""
+    flags = {flag for each in signals if (flag := trace.validity(each))}
+    return all(np.all(trace[flag]) for flag in flags)
 
 
 def signal_in(text: str) -> str:
-    """The signal that a measure is of; an empty text for what is none."""
+    """The signal, or the expression, that a measure is of; an empty text for what is none."""
     found = _FORM.fullmatch(text.strip())
     return found.group(2) if found else ""
 
 
-def measure(text: str, where: str = "") -> Claim:
+def measure(text: str, unit_of: UnitOf, where: str = "") -> Measure | Bounded:
     """The measure that a text such as "highest belt.deflection" states. Raises LoomfmuError."""
     found = _FORM.fullmatch(text.strip())
     way, signal, angle = found.groups() if found else (None, "", None)
-    if not signal or (way and angle):
+    expressed = is_expression(signal)
+    if (way and angle) or (not expressed and (not signal or " " in signal)):
         raise LoomfmuError(f"{where}{text!r} is not one of {FORMS.format('SIGNAL')}")
+    if expressed and way not in EXTREMES:
+        raise LoomfmuError(f"{where}{text!r}: of an expression, write 'highest ...' or 'lowest ...'")
     if angle:
         try:
             return At(signal=signal, angle=units.parse(angle, "rad"))
         except units.UnitError as error:
             raise LoomfmuError(f"{where}{text!r}: {error}") from None
-    if way in ("highest", "lowest"):
-        return (Highest if way == "highest" else Lowest)(
-            signal=signal, bound=0.0, window=None, at_samples=False
-        )
+    if way in EXTREMES:
+        kind = EXTREMES[way][expressed]
+        of = read_expression(signal, unit_of, where.removesuffix(": ") or "measure") if expressed else signal
+        return kind(signal=of, bound=0.0, window=None, at_samples=False)
     return Mean(signal=signal) if way else Held(signal=signal)

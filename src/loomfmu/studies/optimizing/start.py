@@ -8,6 +8,7 @@ import numpy as np
 
 from ... import units
 from ...errors import LoomfmuError, within
+from ...sweeps.directory import Refused
 from ...sweeps.varied import Value
 from ...traces import Verdict
 from .runs import Design, Limits, Point, Runs
@@ -55,7 +56,7 @@ def limits_of(study: Study, verdicts: Sequence[Verdict], path: Path) -> Limits:
 
 
 def check_effects(runs: Runs, points: Sequence[Point], path: Path) -> None:
-    """Refuse a variable that changes neither a goal nor a claim. Raises LoomfmuError."""
+    """Refuse a variable that changes neither a goal nor a claim. Raises Refused."""
     left = dict(enumerate(runs.study.variables))
     for point in points[:BASES]:
         moved = [
@@ -71,18 +72,16 @@ def check_effects(runs: Runs, points: Sequence[Point], path: Path) -> None:
             return
     tried = list(runs.designs.values())
     if all(each.error for each in tried):
-        raise LoomfmuError(
-            f"{path}: none of {len(tried)} designs that were tried can be run ({tried[0].error})"
-        )
+        raise Refused(f"{path}: none of {len(tried)} designs that were tried can be run ({tried[0].error})")
     for each in left.values():
-        raise LoomfmuError(
+        raise Refused(
             f"{path}: {'ranges' if each.range else 'choices'}.{each.key} changes neither a goal nor a claim"
             f" ({each.text}); leave it out"
         )
 
 
 def check_options(runs: Runs, points: Sequence[Point], path: Path) -> None:
-    """Refuse a choice with which no design can be run, while others of its kind can. Raises LoomfmuError."""
+    """Refuse a choice with which no design can be run, while others of its kind can. Raises Refused."""
     for place, each in enumerate(runs.study.variables):
         if each.range or isinstance(each.options, range):
             continue
@@ -92,7 +91,7 @@ def check_options(runs: Runs, points: Sequence[Point], path: Path) -> None:
         ]
         for option, error in zip(each.options, errors, strict=True):
             if error and not all(errors):
-                raise LoomfmuError(
+                raise Refused(
                     f"{path}: choices.{each.key}: no design with {each.varied.show(option)} can be run"
                     f" ({error}); leave it out"
                 )

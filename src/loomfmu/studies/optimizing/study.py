@@ -8,7 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from ... import units
+from ...cosim.claims.expressions import Expression, is_expression
 from ...cosim.claims.measures import measure, signal_in
+from ...cosim.importing.fmus import Port
 from ...cosim.planning.requested import output_port
 from ...cosim.scenes.scene import Scene
 from ...cosim.scenes.settings import read_table
@@ -237,14 +239,26 @@ def _goal(scene: Scene, way: str, name: str, sign: float, known: Sequence[Variab
     if settable and settable.causality == "parameter":
         raise LoomfmuError(f"{way}: {signal} is a parameter; put it into [ranges]")
     try:
-        measure(name, f"{way}: ")
-        port = output_port(scene, signal, way)
-        if name != signal and port.kind == "Boolean":
-            raise LoomfmuError(f"{way}: {signal} is not a number; a goal must be one")
+        return Goal(name, sign, "signal", signals, *_units_of(scene, way, name))
     except LoomfmuError as error:
+        if is_expression(signal):
+            raise
         near = suggestion(name, [*keys, *(claim for claim in claims if claim != "None")])
         raise LoomfmuError(f"{error}; or a variable of [ranges] or a claim{near}") from None
-    return Goal(name, sign, "signal", signals, port.unit, port.display)
+
+
+def _units_of(scene: Scene, way: str, name: str) -> tuple[str, str]:
+    """Return the unit of what is measured, and the one that people read it in. Raises LoomfmuError."""
+
+    def port(signal: str) -> Port:
+        return output_port(scene, signal, way)
+
+    signal = measure(name, lambda each: port(each).unit, f"{way}: ").signal
+    if isinstance(signal, Expression):
+        return signal.unit, signal.display(lambda each: port(each).display)
+    if name != signal and port(signal).kind == "Boolean":
+        raise LoomfmuError(f"{way}: {signal} is not a number; a goal must be one")
+    return port(signal).unit, port(signal).display
 
 
 def names_of(scene: Scene) -> list[str]:
