@@ -312,6 +312,18 @@ def test_a_long_sum_has_no_cases_rather_than_two_to_its_length() -> None:
     assert expression.cases(-1) == [expression]
 
 
+@pytest.mark.parametrize(
+    "signal", [" + ".join(6 * ["abs(a.x)"]), f"max({', '.join(9 * ['abs(a.x) + abs(b.x)'])})"]
+)
+def test_a_claim_with_too_many_cases_says_so(signal: str) -> None:
+    found = judge(run(), kind="below", signal=signal, bound="7 m")
+    assert found.word == "undecided" and "make more than the 32 cases" in found.note
+    assert (
+        "cases" not in judge(run(), kind="below", signal=signal, bound="0.1 m").note
+    )  # it fails in any case
+    assert "cases" not in judge(run(), kind="below", signal=signal, bound="7 m", at_samples=True).note
+
+
 def test_a_long_product_is_read_at_once() -> None:
     assert read("a.x" + 45 * " * 2").node.linear == ({"a.x": 2**45}, 0)  # with 2^45 looks at its start
 

@@ -10,7 +10,7 @@ from ...traces import Signals, Verdict
 from .bounded import Above, Below, Bounded
 from .conditions import Always, Condition, Sum, Unprovable, present
 from .expressed import Expressed, as_float
-from .expressions import Expression
+from .expressions import MOST_CASES, Expression
 from .judging import Question, run_of
 from .movers import Wired
 
@@ -62,7 +62,13 @@ class _OfExpression(Bounded, kind=False):
         return [(case, case._alone(trace)) for case in self._cases]
 
     def judge(self, trace: Signals) -> Verdict:
-        return self._whole([verdict for _case, verdict in self._judged(trace)])
+        found = self._whole([verdict for _case, verdict in self._judged(trace)])
+        if found.decided or self.at_samples or not self._expression.has_too_many_cases(self.sense):
+            return found
+        many = (
+            f"its abs, max and min make more than the {MOST_CASES} cases that can be judged between samples"
+        )
+        return replace(found, note="; ".join(filter(None, (found.note, many))))
 
     def _whole(self, cases: list[Verdict]) -> Verdict:
         """Return the verdict of the worst value; if that holds, it is as undecided as any other case."""

@@ -38,6 +38,10 @@ def is_expression(signal: str) -> bool:
     return re.search(r"[-+*/(),]|^\s*(?![^\W\d_])", signal) is not None
 
 
+class TooManyCases(Exception):
+    """An expression has more than `MOST_CASES`."""
+
+
 @dataclass(frozen=True)
 class Node:
     """A number, a signal or an operation on others; a number is in SI, `factor` leads a signal there.
@@ -82,7 +86,7 @@ class Node:
     def cases(self, sense: int) -> list["Node"]:
         """Smooth expressions that all keep a bound exactly where this one does; an empty list without such.
 
-        With sense 1 the least of them is this expression, with -1 the largest.
+        With sense 1 the least of them is this expression, with -1 the largest. Raises TooManyCases.
         """
         if self.smooth:
             return [self]
@@ -90,8 +94,9 @@ class Node:
             return [each.negative for each in self.parts[0].cases(-sense)]
         if self.kind == "+":
             every = [part.cases(sense) for part in self.parts]
-            many = math.prod(map(len, every)) > MOST_CASES  # each further one would double them
-            return [] if many else [self.of(*each) for each in product(*every)]
+            if math.prod(map(len, every)) > MOST_CASES:  # each further one would double them
+                raise TooManyCases
+            return [self.of(*each) for each in product(*every)]
         if self.kind == "*" or (self.kind == "/" and self.parts[1].constant is not None):
             return self._scaled(sense)
         if self.kind == ("max" if sense < 0 else "min"):
@@ -173,10 +178,19 @@ class Expression(str):
 
     def cases(self, sense: int) -> list["Expression"]:
         """Smooth expressions, see `Node.cases`; itself if there are none, or too many."""
-        found = self.node.cases(sense)
-        if len(found) < 2 or len(found) > MOST_CASES:
-            return [self]
-        return [Expression.made(each, each.text, self.unit) for each in found]
+        found = self._nodes(sense) or []
+        return [Expression.made(each, each.text, self.unit) for each in found] if len(found) > 1 else [self]
+
+    def has_too_many_cases(self, sense: int) -> bool:
+        """Return whether there are more than `MOST_CASES`."""
+        return self._nodes(sense) is None
+
+    def _nodes(self, sense: int) -> list[Node] | None:
+        try:
+            found = self.node.cases(sense)
+        except TooManyCases:
+            return None
+        return found if len(found) <= MOST_CASES else None
 
 
 def read(text: str, unit_of: UnitOf, where: str) -> Expression:
