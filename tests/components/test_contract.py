@@ -441,9 +441,32 @@ def check_rates(component, given, begin, quickening):
 
 @pytest.mark.few(1, each="component")
 @every_flag
+def test_the_start_depends_on_nothing_but_what_its_source_shows(component, given):
+    rng = random.Random(5)
+    needs = dependencies(component).start
+    knowns = [v for v in declared(component) if v.causality in ("input", "parameter") and v.name not in given]
+
+    def started(changed, time):
+        rejected = {n for n, each in enumerate(component.problems, start=1) if not each.warning}
+        instance = component(**given | {k: v for k, v in changed.items() if k not in inputs_drawn})
+        assign(instance, inputs_drawn | {k: v for k, v in changed.items() if k in inputs_drawn})
+        return None if instance.initialize(time) in rejected else values(instance, "output")
+
+    for _ in range(3):
+        inputs_drawn = drawn_inputs(component, rng)
+        one = started({}, 0.0)
+        others = {v.name: started({v.name: v.type(rng.uniform(*span(v)))}, 0.0) for v in knowns}
+        for name, two in {**others, TIME: started({}, 0.3)}.items():
+            for output, needed in needs.items():
+                if one and two and name not in needed:
+                    assert one[output] == two[output], (output, name)
+
+
+@pytest.mark.few(1, each="component")
+@every_flag
 def test_outputs_depend_on_nothing_but_what_their_source_shows(component, given):
     rng = random.Random(4)
-    needs = dependencies(component)
+    needs = dependencies(component).once
     kinds = ("input", "parameter") if component.keeps == NOTHING else ("input",)
     knowns = [v for v in declared(component) if v.causality in kinds and v.name not in given]
     for _ in range(3):
@@ -476,6 +499,6 @@ def after_a_step(component, given, start, then, time):
 @every_component
 def test_what_is_constant_follows_from_the_parameters_alone(component):
     knowns = {TIME, *(v.name for v in inputs(component))}
-    follow = {output for output, needed in dependencies(component).items() if needed.isdisjoint(knowns)}
+    follow = {output for output, needed in dependencies(component).once.items() if needed.isdisjoint(knowns)}
     if component.keeps == NOTHING:  # what keeps more may go on by itself
         assert follow == {v.name for v in declared(component) if v.constant}

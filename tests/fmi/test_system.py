@@ -67,6 +67,16 @@ def test_an_output_depends_on_what_leads_to_it_from_outside(system: System) -> N
     assert not [name for name in needs[MARGIN] if name in ("belt.travel", CLEARANCE)]
     assert needs[CLEARANCE] == []  # it follows a table
     assert rotor <= set(needs["heald_1.lift"])
+    start = {
+        listed[int(each.get("index", "")) - 1]: {
+            listed[int(place) - 1] for place in each.get("dependencies", "").split()
+        }
+        for each in root.findall("ModelStructure/InitialUnknowns/Unknown")
+    }
+    assert {"weft.shaft_angle", "weft.follow_shaft"} <= start[TRAVEL] and "heald_1.stroke" not in start[
+        TRAVEL
+    ]
+    assert start[CLEARANCE] == set()
     experiment = root.find("DefaultExperiment")
     assert experiment is not None
     assert (experiment.get("stopTime"), experiment.get("stepSize")) == ("2.0", "0.001")

@@ -234,6 +234,8 @@ class Component:
     drawn: ClassVar[tuple[str, ...]] = ()
     # the inputs that each output depends on, of a component whose source does not show them
     needs: ClassVar[Mapping[str, frozenset[str]]] = {}
+    # and the inputs and parameters that it depends on at the start
+    needs_at_start: ClassVar[Mapping[str, frozenset[str]]] = {}
     # whether a native FMU has derivatives of its outputs
     derivatives: ClassVar[bool] = True
     # end and communication step that a host starts from [s]

@@ -57,7 +57,7 @@ def identity(component: type[Component]) -> Identity:
 def needs(component: type[Component]) -> Mapping[str, frozenset[str]]:
     """On what each output of a component depends over several steps, as `dependencies` says."""
     if not is_own(component):
-        return dependencies(component, many_steps=True)
+        return dependencies(component).always
     kept = _kept(component.__name__)["needs"]
     return {output: frozenset(names.split()) for output, names in kept.items()}
 
@@ -122,7 +122,7 @@ def _shipped() -> dict[str, Any] | None:
 
 def _of(name: str) -> dict[str, Any]:
     component = components.COMPONENTS[name]
-    found = dependencies(component, many_steps=True)
+    found = dependencies(component).always
     needed = {output: " ".join(sorted(names)) for output, names in found.items()}
     return {"fmu": _computed(component), "needs": needed}
 

@@ -122,7 +122,7 @@ class Ways(Component):
 
 
 def test_each_output_depends_on_what_leads_to_it():
-    assert {name: " ".join(sorted(needed)) for name, needed in dependencies(Ways).items()} == {
+    assert {name: " ".join(sorted(needed)) for name, needed in dependencies(Ways).once.items()} == {
         "by_branch": "a p",
         "beside_branch": "p",
         "by_field": "p",
@@ -166,8 +166,13 @@ class Filter(Component):
 
 
 def test_what_is_kept_is_held_for_a_step_and_counts_for_several():
-    assert dependencies(Filter) == {"delayed": set(), "smooth": {"x"}}
-    assert dependencies(Filter, many_steps=True) == {"delayed": {"x"}, "smooth": {"x"}}
+    assert dependencies(Filter).once == {"delayed": set(), "smooth": {"x"}}
+    assert dependencies(Filter).always == {"delayed": {"x"}, "smooth": {"x"}}
+
+
+def test_at_the_start_parameters_count_though_something_is_kept():
+    assert dependencies(Filter).start == {"delayed": {"x"}, "smooth": {"x", "p"}}
+    assert dependencies(Ways).start["by_method"] == {"b", "d"}  # no host has inputs go on there
 
 
 @dataclass(slots=True)
@@ -199,4 +204,4 @@ class Shared(Filter):
 @pytest.mark.parametrize("component", [Foreign, Shared])
 def test_where_the_source_cannot_be_followed_all_counts(component):
     everything = {"x", "unused", "time"}
-    assert dependencies(component) == {"delayed": everything, "smooth": everything}
+    assert dependencies(component).once == {"delayed": everything, "smooth": everything}

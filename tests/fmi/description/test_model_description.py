@@ -189,19 +189,17 @@ def test_some_facts_spelt_out() -> None:
 
 
 @every_fmu
-def test_structure_lists_every_output_with_the_inputs_it_depends_on(name: str) -> None:
+def test_structure_lists_every_output_with_what_it_depends_on(name: str) -> None:
     """That the outputs depend on no others is tested of the components themselves."""
     root = xml(name)
     places = {variable.name: place for place, variable in enumerate(variables_of(COMPONENTS[name]), start=1)}
     inputs = {v.name for v in variables_of(COMPONENTS[name]) if v.causality == "input"}
-    wanted = {
-        places[output]: {places[each] for each in needed & inputs}
-        for output, needed in dependencies(COMPONENTS[name]).items()
-    }
-    found = {
-        int(unknown.attrib["index"]): {int(place) for place in unknown.attrib["dependencies"].split()}
-        for unknown in root.findall("ModelStructure/Outputs/Unknown")
-    }
-    assert found == wanted
-    unknowns = root.findall("ModelStructure/InitialUnknowns/Unknown")
-    assert [int(unknown.attrib["index"]) for unknown in unknowns] == list(wanted)
+    needs = dependencies(COMPONENTS[name])
+    for tag, knowns, wanted in (("Outputs", inputs, needs.once), ("InitialUnknowns", {*places}, needs.start)):
+        found = {
+            int(unknown.attrib["index"]): {int(place) for place in unknown.attrib["dependencies"].split()}
+            for unknown in root.findall(f"ModelStructure/{tag}/Unknown")
+        }
+        assert found == {
+            places[output]: {places[each] for each in needed & knowns} for output, needed in wanted.items()
+        }

@@ -24,6 +24,14 @@ class Unfollowed(Exception):
     """Source beyond the Python that is followed here."""
 
 
+def started(component: type[Component], own: Mapping[str, Names]) -> Places:
+    """The places after the start, from what variables depend on before."""
+    flow = _Flow(component)
+    flow.places |= own
+    flow.call(flow.methods["initialize"], [NONE, frozenset({TIME})])
+    return flow.places
+
+
 def followed(component: type[Component], own: Mapping[str, Names]) -> tuple[Places, Places]:
     """The places after one step, and after many, from what variables depend on before."""
     flow = _Flow(component)

@@ -173,20 +173,20 @@ def _text(value: float | int | bool) -> str:
 
 
 def _structure(root: Element, component: type[Component]) -> None:
-    """Outputs with the inputs they depend on, and the unknowns of the initialization.
+    """Outputs with the inputs they depend on, and those of the start with inputs and parameters.
 
-    In FMI 2.0 neither parameters are known after it, nor is there a variable that is the time.
+    In FMI 2.0 there is no variable that is the time.
     """
     variables = variables_of(component)
     index = {v.name: str(place) for place, v in enumerate(variables, start=1)}
-    inputs = [v.name for v in variables if v.causality == "input"]
+    needs, inputs = dependencies(component), [v.name for v in variables if v.causality == "input"]
     structure = SubElement(root, "ModelStructure")
     outputs = SubElement(structure, "Outputs")
     unknowns = SubElement(structure, "InitialUnknowns")
-    for output, needed in dependencies(component).items():
-        listed = " ".join(index[name] for name in inputs if name in needed)
-        SubElement(outputs, "Unknown", index=index[output], dependencies=listed)
-        SubElement(unknowns, "Unknown", index=index[output])
+    for parent, knowns, found in ((outputs, inputs, needs.once), (unknowns, index, needs.start)):
+        for output, needed in found.items():
+            listed = " ".join(index[name] for name in knowns if name in needed)
+            SubElement(parent, "Unknown", index=index[output], dependencies=listed)
 
 
 def output_order(component: type[Component]) -> int:
@@ -265,7 +265,7 @@ def _time_reference(variables: tuple[Variable, ...]) -> int:
 
 
 def _structure3(root: Element, component: type[Component]) -> None:
-    """Outputs with the knowns they depend on, and the unknowns of the start, which depend on any.
+    """Outputs with the knowns they depend on, and those of the start with theirs.
 
     What is listed is what there are derivatives by, so no parameters where they are fixed after the start.
     """
@@ -274,11 +274,10 @@ def _structure3(root: Element, component: type[Component]) -> None:
     references[TIME] = str(_time_reference(variables))
     structure = SubElement(root, "ModelStructure")
     needs = dependencies(component)
-    for output, needed in needs.items():
-        listed = " ".join(place for name, place in references.items() if name in needed)
-        SubElement(structure, "Output", valueReference=references[output], dependencies=listed)
-    for output in needs:
-        SubElement(structure, "InitialUnknown", valueReference=references[output])
+    for tag, found in (("Output", needs.once), ("InitialUnknown", needs.start)):
+        for output, needed in found.items():
+            listed = " ".join(place for name, place in references.items() if name in needed)
+            SubElement(structure, tag, valueReference=references[output], dependencies=listed)
     for variable in variables:
         if variable.indicator:
             SubElement(structure, "EventIndicator", valueReference=references[variable.name])

@@ -91,13 +91,18 @@ class System:
 def component_of(system: System) -> type[Component]:
     """The system as a component: its variables are declared, its code is not in Python."""
     variables = (_grid(system), *(v for part in system.parts for v in _variables(system, part)))
-    reach = _reach(system)
+    # a communication step may hold several of the system's
+    reach = _reach(system, {p.name: dependencies(p.component).always for p in system.parts}, "input")
+    starts = {p.name: dependencies(p.component).start for p in system.parts}
+    reach_at_start = _reach(system, starts, "input", "parameter")
+    outputs = [v.name for v in variables if v.causality == "output"]
     members = {
         "__doc__": system.title,
         "declared": classmethod(lambda _cls: variables),
         "problems": (system.problem, *(p for part in system.parts for p in problems_of(system, part))),
         "terminals": tuple(_terminals(system, {v.name: v for v in variables})),
-        "needs": {v.name: reach(v.name) for v in variables if v.causality == "output"},
+        "needs": {name: reach(name) for name in outputs},
+        "needs_at_start": {name: reach_at_start(name) for name in outputs},
         "experiment": system.experiment,
         "derivatives": not system.closing,
     }
@@ -140,13 +145,11 @@ def _variables(system: System, part: Part) -> list[Variable]:
     return found
 
 
-def _reach(system: System) -> Reach:
-    """A function that gives the open inputs on which a variable depends, `TIME` among them."""
+def _reach(system: System, needs: Mapping[str, Mapping[str, frozenset[str]]], *knowns: str) -> Reach:
+    """A function that gives the open `knowns` on which a variable depends, `TIME` among them."""
     names = {
         f"{part.name}.{v.name}": v.causality for part in system.parts for v in variables_of(part.component)
     }
-    # a communication step may hold several of the system's
-    needs = {part.name: dependencies(part.component, many_steps=True) for part in system.parts}
 
     def sources(name: str) -> list[str]:
         owner, _, variable = name.partition(".")
@@ -163,7 +166,7 @@ def _reach(system: System) -> Reach:
             new = {*sources(left.pop())} - found
             found |= new
             left += new
-        leaves = (each for each in found if names.get(each) == "input" and not sources(each))
+        leaves = (each for each in found if names.get(each) in knowns and not sources(each))
         return frozenset(leaves) | (found & {TIME})
 
     return reach
