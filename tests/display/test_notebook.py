@@ -1,6 +1,7 @@
 """What notebooks and xarray are given."""
 
 import sys
+from functools import partial
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
 from typing import Any
@@ -36,6 +37,23 @@ def result(tmp_path_factory: pytest.TempPathFactory, fmu_cache: None) -> loomfmu
     path = tmp_path_factory.mktemp("notebook") / "loom.toml"
     path.write_text(SCENE)
     return loomfmu.run(path, output=path.with_suffix(".h5"))
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [
+        partial(loomfmu.evaluate),
+        partial(loomfmu.gradient, of="belt.lowest_margin", by="shaft.speed"),
+        partial(loomfmu.limit, vary="belt.guide_clearance", points=3),
+    ],
+    ids=lambda asked: asked.func.__name__,
+)
+def test_a_number_that_was_probably_meant_in_another_unit_is_seen(asked, result) -> None:
+    found = asked(result.scene, set={"shaft.speed": 600, "revolutions": 1})
+    (warning,) = found.warnings
+    assert warning.startswith("shaft.speed = 600 is read as 600 rad/s = 5729.578 rev/min")
+    assert repr(found).endswith(f"\nwarning: {warning}")
+    assert "warning: shaft.speed = 600 is read as" in found._repr_html_()
 
 
 def test_a_dataset_has_units_and_the_shaft_angle(result: loomfmu.Result) -> None:

@@ -55,16 +55,16 @@ class Judged:
         if not self.claims:
             summary = "no claims"
         listed = "".join(f"\n  {verdict}" for verdict in failing)
-        return f"<{type(self).__name__} {self.scene.name}: {summary}{listed}>"
+        return notebook.warned(f"<{type(self).__name__} {self.scene.name}: {summary}{listed}>", self.warnings)
 
     def _repr_html_(self) -> str:
         summary = (outcome(self.claims) or "all claims hold") if self.claims else "no claims"
         notes = [f"ended by {self.ended}"] * bool(self.ended) + [self.chosen] * bool(self.chosen)
-        notes += [f"warning: {each}" for each in self.warnings]
         return notebook.block(
             f"{heading(self.scene)}: {summary}",
             *([notebook.table(HEADINGS, [claim.row for claim in self.claims])] if self.claims else []),
             *map(notebook.line, notes),
+            warnings=self.warnings,
         )
 
 

@@ -36,6 +36,16 @@ def line(words: str) -> str:
     return f"<div>{text(words)}</div>"
 
 
-def block(title: str, *parts: str) -> str:
-    """Parts, already HTML, below a title."""
-    return f'<div style="overflow-x:auto"><strong>{text(title)}</strong>{"".join(parts)}</div>'
+def block(title: str, *parts: str, warnings: Sequence[str] = ()) -> str:
+    """Parts, already HTML, below a title, and warnings below them."""
+    below = "".join((*parts, *map(line, _warnings(warnings))))
+    return f'<div style="overflow-x:auto"><strong>{text(title)}</strong>{below}</div>'
+
+
+def warned(words: str, warnings: Sequence[str]) -> str:
+    """A result in words, with its warnings below it."""
+    return "\n".join([words, *_warnings(warnings)])
+
+
+def _warnings(warnings: Sequence[str]) -> list[str]:
+    return [f"warning: {each}" for each in warnings]

@@ -33,7 +33,7 @@ class Gradient:
 
     A row for each of `of` and a column for each of `by`: `si` in the units of the FMUs, `values` in those
     that people read, which `units` names. `numbers` are the claims' distances from their bounds and the
-    values of the signals, in SI.
+    values of the signals, in SI; `warnings` are those of the scene.
     """
 
     title: str
@@ -43,16 +43,17 @@ class Gradient:
     si: NDArray[np.float64] = field(compare=False)
     values: NDArray[np.float64] = field(compare=False)
     units: tuple[tuple[str, ...], ...]
+    warnings: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         rows = self.rows
         widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
         lines = ("  ".join(map(str.ljust, row, widths)).rstrip() for row in rows)
-        return "\n".join([f"<Gradient of {self.title}>", *lines])
+        return notebook.warned("\n".join([f"<Gradient of {self.title}>", *lines]), self.warnings)
 
     def _repr_html_(self) -> str:
         head, *rows = self.rows
-        return notebook.block(self.title, notebook.table(head, rows))
+        return notebook.block(self.title, notebook.table(head, rows), warnings=self.warnings)
 
     @property
     def rows(self) -> list[tuple[str, ...]]:
@@ -131,6 +132,7 @@ def gradient(
         si,
         si * factors * shares[:, np.newaxis],
         tuple(tuple(_per(each.label, key.shown_unit) for key in parameters) for each in verdicts),
+        loom.scene.notes,
     )
 
 

@@ -87,13 +87,14 @@ class Fit(Sure):
 
     def __repr__(self) -> str:
         found = ", ".join(f"{each.span.key} = {each.span.show(each.value)}" for each in self.parameters)
-        return f"<Fit of {self.scene.name} to {self.data.path}: {found}>"
+        return notebook.warned(f"<Fit of {self.scene.name} to {self.data.path}: {found}>", self.warnings)
 
     def _repr_html_(self) -> str:
         return notebook.block(
             f"{self.title}: {self.data.path}",
             notebook.table(HEADINGS, rows(self)),
             *map(notebook.line, self.notes),
+            warnings=self.warnings,
         )
 
 

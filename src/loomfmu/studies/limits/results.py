@@ -114,12 +114,12 @@ class Limits:
         return " ".join(conclusion(self))
 
     def __repr__(self) -> str:
-        return f"<Limits {self.span.key} of {self.title}: {self}>"
+        return notebook.warned(f"<Limits {self.span.key} of {self.title}: {self}>", self.warnings)
 
     def _repr_html_(self) -> str:
         table = notebook.table(HEADINGS, rows(self))
         lines = (*conclusion(self), *(proofs(self) if self.proved else ()))
-        return notebook.block(self.title, table, *map(notebook.line, lines))
+        return notebook.block(self.title, table, *map(notebook.line, lines), warnings=self.warnings)
 
 
 @dataclass(frozen=True, repr=False)
@@ -145,10 +145,12 @@ class Boundary:
         return tuple(dict.fromkeys(found))
 
     def __repr__(self) -> str:
-        return f"<Boundary of {self.title}: {self.first.key} at {len(self.rows)} values of {self.second.key}>"
+        varied = f"{self.first.key} at {len(self.rows)} values of {self.second.key}"
+        return notebook.warned(f"<Boundary of {self.title}: {varied}>", self.warnings)
 
     def _repr_html_(self) -> str:
-        return notebook.block(self.title, notebook.table(boundary_headings(self), boundary_rows(self)))
+        table = notebook.table(boundary_headings(self), boundary_rows(self))
+        return notebook.block(self.title, table, warnings=self.warnings)
 
 
 # ---- in words

@@ -111,7 +111,7 @@ class Optimum:
         return " ".join(conclusion(self))
 
     def __repr__(self) -> str:
-        return f"<Optimum of {self.study.title}: {self}>"
+        return notebook.warned(f"<Optimum of {self.study.title}: {self}>", self.warnings)
 
     def _repr_html_(self) -> str:
         if len(self.study.goals) > 1:
@@ -119,7 +119,8 @@ class Optimum:
         else:
             tables = [table for best in self.front for table in best_tables(self, best)]
         shown = (notebook.table(*table) for table in tables)
-        return notebook.block(self.study.title, *shown, *map(notebook.line, conclusion(self)))
+        lines = map(notebook.line, conclusion(self))
+        return notebook.block(self.study.title, *shown, *lines, warnings=self.warnings)
 
 
 # ---- in words

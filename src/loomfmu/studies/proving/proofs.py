@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from ...cosim.claims.conditions import Condition
 from ...cosim.scenes.scene import Scene
 from ...declaring.variables import Component
+from ...display import notebook
 from ...errors import listed
 from ..span import Span
 from .cover import Cover
@@ -80,4 +81,4 @@ class Proofs:
     def __repr__(self) -> str:
         proven = f"{sum(map(bool, self.claims))} of {len(self.claims)} claims proven"
         others = "".join(f"\n  {each.status}: {each.claim}" for each in self.claims if not each)
-        return f"<Proofs of {self.scene.name}: {proven}{others}>"
+        return notebook.warned(f"<Proofs of {self.scene.name}: {proven}{others}>", self.warnings)

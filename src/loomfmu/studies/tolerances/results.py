@@ -81,13 +81,13 @@ class Tolerances:
 
     def __repr__(self) -> str:
         failing = sum(not each.worst for each in self.claims)
-        return (
-            f"<Tolerances of {self.title}: {failing} of {len(self.claims)} claims fail in their worst case>"
-        )
+        outcome = f"{failing} of {len(self.claims)} claims fail in their worst case"
+        return notebook.warned(f"<Tolerances of {self.title}: {outcome}>", self.warnings)
 
     def _repr_html_(self) -> str:
         table = notebook.table(HEADINGS, rows(self))
-        return notebook.block(self.title, table, *map(notebook.line, (*unsettled(self), *proofs(self))))
+        lines = map(notebook.line, (*unsettled(self), *proofs(self)))
+        return notebook.block(self.title, table, *lines, warnings=self.warnings)
 
 
 def rows(found: Tolerances) -> list[tuple[str, ...]]:

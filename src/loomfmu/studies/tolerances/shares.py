@@ -76,12 +76,11 @@ class Shares:
         return self.all.holding == self.all.of if self.asked is None else self.all.low >= self.asked
 
     def __repr__(self) -> str:
-        return f"<Shares of {self.title}: {_sentence(self)}>"
+        return notebook.warned(f"<Shares of {self.title}: {_sentence(self)}>", self.warnings)
 
     def _repr_html_(self) -> str:
-        return notebook.block(
-            self.title, notebook.table(HEADINGS, rows(self)), notebook.line(_sentence(self))
-        )
+        parts = notebook.table(HEADINGS, rows(self)), notebook.line(_sentence(self))
+        return notebook.block(self.title, *parts, warnings=self.warnings)
 
 
 def show(found: Shares) -> None:
