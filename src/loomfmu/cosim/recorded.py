@@ -4,9 +4,11 @@ import os
 import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
 
+from ..declaring.variables import ALONE
 from ..display import printed
 from ..display.progress import progress as progress_bar
 from ..errors import LoomfmuError, why
@@ -114,7 +116,7 @@ def target_of(plan: Plan, path: Path, overwrite: bool, report: bool) -> Path:
     inputs = files_of(plan.scene)
     check_target(path, TRACE, inputs, overwrite)
     check_target(partial_of(path), PARTIAL, inputs, overwrite)
-    size = largest(plan.grid.steps + 1, len(plan.signals))
+    size = largest(plan.grid.steps + 1, len(plan.signals) + len(plan.scene.connectors))
     if report and size > LARGE_TRACE:
         printed.complain(f"{path}: the trace takes up to {size_text(size)}; record = [...] keeps less")
     interrupted = [partial_of(path)] if partial_of(path).exists() else []
@@ -131,9 +133,20 @@ def target_of(plan: Plan, path: Path, overwrite: bool, report: bool) -> Path:
 def writer_of(
     plan: Plan, channels: list[Channel], path: Path, target: Path, about: dict[str, str | float]
 ) -> TraceWriter:
-    """Return a writer of the trace, with the file begun; `about` are the attributes of the run."""
+    """Return a writer of the trace, with the file begun; `about` are the attributes of the run.
+
+    A connector of a package's system is written as the signal that it is.
+    """
+    signals = {channel.signal: channel for channel in channels}
+    named = [
+        replace(signals[signal], instance=owner, variable=name, rate=None, beside=ALONE)
+        for (owner, _, name), signal in (
+            (each.partition("."), signal) for each, signal in plan.scene.connectors.items()
+        )
+        if signal in signals
+    ]
     try:
-        return TraceWriter(target, about, channels, groups(plan), plan.grid.steps + 1)
+        return TraceWriter(target, about, [*channels, *named], groups(plan), plan.grid.steps + 1)
     except OSError as error:
         raise cannot_write(path, error) from None
 

@@ -4,21 +4,26 @@ import re
 from collections.abc import Collection
 from pathlib import Path
 
+from ..declaring.variables import Component, variables_of
 from ..errors import LoomfmuError
 from ..files import check_target, write_file
 from ..fmi.fmu_files import FMU, zipped
 from ..fmi.native.c_code import KEYWORDS
 from ..fmi.native.platforms import PLATFORMS
-from ..fmi.system.system import Drive, Part, System
+from ..fmi.system.system import Drive, Part, System, component_of
 from ..fmi.system.system_fmu import contents
+from .master.grid import uniform
+from .planning.plan import Stepping
 from .planning.pruning import prune
 from .planning.requested import Requested
 from .reading import checked_claims
 from .scenes.graph import step_order
 from .scenes.headings import heading
-from .scenes.instances import Instance
+from .scenes.instances import Instance, altered
 from .scenes.scene import Scene, files_of
 from .scenes.settings import ITERATED
+
+LINES = 200  # of the reference results
 
 
 def export(
@@ -31,6 +36,7 @@ def export(
     """Write a scene as one native FMU of FMI 2 or FMI 3, and return warnings.
 
     It gives what the scene records and what its claims need, and holds only the instances that this takes.
+    The results of a revolution go with it.
     The same scene gives the same bytes. `overwrite` replaces a file that is not an FMU of ours.
 
     Raises:
@@ -47,8 +53,29 @@ def export(
             f"loop: {source} -> {sink} is {scene.coupling}, and one FMU of a whole scene iterates:"
             f" set coupling = {ITERATED!r}"
         )
-    write_file(path, zipped(contents(made, platforms, fmi)), FMU, inputs, overwrite)
-    return [*scene.notes]
+    reference, warnings = None, [*scene.notes]
+    try:
+        reference = _reference(scene, component_of(made))
+    except LoomfmuError as error:  # other values may do
+        warnings.append(f"the FMU has no reference results, since the scene cannot run: {error}")
+    write_file(path, zipped(contents(made, platforms, fmi, reference)), FMU, inputs, overwrite)
+    return warnings
+
+
+def _reference(scene: Scene, component: type[Component]) -> bytes:
+    """The outputs along a revolution, or `LINES` steps of a scene in seconds, in at most so many lines."""
+    each = round(scene.steps_per_period) if scene.step is None else LINES
+    steps = min(scene.steps, each)
+    stride = -(-steps // LINES)
+    periods = steps // stride * stride / scene.steps_per_period
+    shorter = altered(scene, periods=periods, accuracy=None)
+    outputs = {v.structured: v.name for v in variables_of(component) if v.causality == "output"}
+    stepping = Stepping(Requested(shorter), tuple(outputs.values()))
+    found = stepping.in_memory(shorter, uniform(shorter)).recording
+    columns = [found.time, *(1 * found[name] for name in outputs.values())]  # yes and no as 1 and 0
+    rows = zip(*(column[::stride].tolist() for column in columns), strict=True)
+    lines = [",".join(["time", *outputs]), *(",".join(map(repr, row)) for row in rows)]
+    return "".join(f"{line}\n" for line in lines).encode()
 
 
 def system(scene: Scene, whole: str = "one FMU of a whole scene", instead: str = "use --ssp") -> System:

@@ -209,6 +209,19 @@ def test_what_names_no_variable_is_left_out_and_told(tmp_path: Path) -> None:
     )
 
 
+def test_outputs_of_the_system_are_recorded_by_their_names(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    known = "".join(f'<ssd:Connector name="{name}" kind="output"/>' for name in ("the angle", "twice"))
+    ends = '<ssd:Connection startElement="drive" startConnector="phi" endConnector='
+    twice = f'{ends}"twice"><ssc:LinearTransformation factor="2"/></ssd:Connection>'
+    outer = STRUCTURE.replace("<ssd:Connectors>", f"<ssd:Connectors>{known}", 1)
+    monkeypatch.setitem(globals(), "STRUCTURE", outer)
+    trace = ran(tmp_path, connection=f'{ends}"the angle"/>{twice}').trace
+    np.testing.assert_array_equal(trace["all.the_angle"], trace["drive_motor.flange_phi"])
+    assert trace.unit("all.the_angle") == "rad" and "all.twice" not in trace
+
+
 def test_a_value_for_a_component_that_does_not_exist_is_named(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 from live_fmus import COMPONENTS, NAMES
 from sharing import native_fmus
+from whole_fmus import exported
 
 from loomfmu.cosim.importing import fmus
+from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.declaring.variables import variables_of
 from loomfmu.fmi.description.parameter_sets import parameter_sets
 from loomfmu.fmi.description.related_files import related_files
@@ -42,7 +44,7 @@ def test_the_manifest_lists_what_is_there(name: str, tmp_path: Path) -> None:
         assert each.tag == "Related" and (folder / each.get("source", "")).resolve().is_file()
 
 
-def gives_its_results(path: Path, directory: Path) -> None:
+def gives_its_results(path: Path, directory: Path, lines: int = 145) -> None:
     root, folder = listed(path, directory)
     (source,) = (each.get("source", "") for each in root if each.get("role") == "result")
     expected = np.genfromtxt(folder / source, delimiter=",", names=True, deletechars="")
@@ -50,7 +52,7 @@ def gives_its_results(path: Path, directory: Path) -> None:
     found = fmpy.simulate_fmu(
         str(path), stop_time=times[-1], output_interval=times[1], fmi_type="CoSimulation"
     )
-    assert len(found) == len(times) > 100
+    assert len(found) == len(times) == lines
     for output in expected.dtype.names:
         # the same operations in the same order: only another libm may differ, by some last bits
         scale = np.max(np.abs(expected[output]))
@@ -75,3 +77,11 @@ def test_results_of_something_else_are_left_out() -> None:
     assert len(related_files(component, right.encode())) == 2
     assert related_files(component, right.replace("time", "angle", 1).encode()) == {}
     assert related_files(component, b"") == related_files(component, None) == {}
+
+
+@pytest.mark.parametrize("fmi", [2, 3])
+@pytest.mark.parametrize("steps", [30, 700])  # a line for each step, and for each four of them
+def test_a_whole_loom_gives_the_results_that_it_carries(tmp_path: Path, fmi: int, steps: int) -> None:
+    text = f"revolutions = 1.5\nsteps_per_revolution = {steps}\n[shaft]\n[weft]\n[dobby]\n[heald_1]\n"
+    path = exported(scenes.parse(text, "loom"), tmp_path, fmi)
+    gives_its_results(path, tmp_path / "unpacked", lines=1 + (30 if steps == 30 else 175))

@@ -33,6 +33,7 @@ class Scene:
     `overrides` the values that differ from it, `notes` what the user is to be warned of. `tolerances` are the
     ends between which values may lie, or tables of their distributions, as the scene states them. `isolated`
     says whether FMUs run in processes of their own; by default third-party ones do.
+    `connectors` are the outputs of a package's system, as a trace calls them, and the signals that they are.
     A call of such an FMU may take `step_timeout`, and a whole run `run_timeout` [s]. Where an FMU `may_end`
     the run early, claims are judged on what there is.
     """
@@ -64,6 +65,7 @@ class Scene:
     overrides: dict[str, Any] = field(default_factory=dict)
     texts: dict[str, str] = field(default_factory=dict)
     package_sha256: str = ""
+    connectors: dict[str, str] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         return f"<Scene {self.name}: {len(self.instances)} instances, {len(self.claims)} claims>"

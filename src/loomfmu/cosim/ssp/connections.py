@@ -88,6 +88,21 @@ class Nets:
         takers = zip(found, causality, strict=True)
         return [each for each, kind in takers if kind in ("input", "parameter") and "output" not in causality]
 
+    def outputs(self) -> dict[str, str]:
+        """The connectors of the outermost system to which an output leads as it is, and that output.
+
+        Its unit may be converted on the way. Arrays and transformed values are left out.
+        """
+        found = {}
+        for output in [node for node, causality in self._causality.items() if causality == "output"]:
+            (name, variable), unit = self.variable(output), self._unit(output)
+            fmu = self._instances[name].fmu
+            for end in self._flow(output, unit):
+                same = end.conversion == conversion("", unit, "", end.unit)
+                if not end.node[0] and same and not fmu.elements(variable):
+                    found[end.node[1]] = f"{name}.{fmu.name_of(variable)}"
+        return found
+
     def variable(self, node: Node) -> tuple[str, str]:
         """The instance and the variable that a connector of a component is."""
         return self._names[node[0]], node[1]

@@ -122,6 +122,7 @@ class _Reader:
             package_sha256=self.package.sha256,
             notes=tuple(self.notes),
             overrides=dict(overrides),
+            connectors={} if text is not None else _recorded(system, instances, nets.outputs()),
         )
 
     def _scene_of_ours(self) -> Element | None:
@@ -221,6 +222,14 @@ class _Reader:
                 required(fixed, attribute)
                 return tables | {"step": real(fixed, attribute, 0.0)}
         return tables
+
+
+def _recorded(system: Element, instances: Iterable[str], outputs: Mapping[str, str]) -> dict[str, str]:
+    """The outputs of the outermost system as a trace calls them, below the name of the system."""
+    own = required(system, "name")
+    owner = plain_names([*instances, own], [own])[-1]
+    names = plain_names(outputs, outputs)
+    return {f"{owner}.{name}": signal for name, signal in zip(names, outputs.values(), strict=True)}
 
 
 def _in_component(path: Sequence[str], given: Given, dotted: Mapping[str, str]) -> list[tuple[str, Given]]:

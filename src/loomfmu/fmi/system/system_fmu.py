@@ -8,6 +8,7 @@ from ...declaring.variables import Component
 from ...version import __version__
 from ..description import documentation
 from ..description.model_description import model_description
+from ..description.related_files import related_files
 from ..description.terminals import terminal_files
 from ..fmu_files import NAMESPACE
 from ..native import native_fmu as native
@@ -55,8 +56,10 @@ command, run in that folder, builds it for another platform:
 """
 
 
-def contents(system: System, platforms: tuple[str, ...], fmi: int) -> dict[str, bytes]:
-    """All files of the FMU by their names in it. Raises LoomfmuError as `build_native`."""
+def contents(
+    system: System, platforms: tuple[str, ...], fmi: int, reference: bytes | None = None
+) -> dict[str, bytes]:
+    """All files of the FMU by their names in it, with reference results. Raises as `build_native`."""
     component = component_of(system)
     translation = translated(system)
     token = _token(component, translation.header + translation.code)
@@ -66,6 +69,7 @@ def contents(system: System, platforms: tuple[str, ...], fmi: int) -> dict[str, 
         native.ICONS[fmi]: ICON.read_bytes(),
         "documentation/index.html": documentation.page(system.name, _readme(system, component, fmi)),
         **terminal_files(component),
+        **related_files(component, reference),
     }
     code = native.with_shell(translation, model, dual_model, fmi)
     # inputs are held over several steps, so that no derivative of them counts
