@@ -371,6 +371,13 @@ def test_the_belt_in_motion_has_a_drawing_of_its_own(tmp_path: Path) -> None:
     assert "loomfmu run --report records its whole shape" in html
 
 
+def test_captions_of_a_belt_and_of_its_motion_do_not_contradict_one_another(whole: Trace) -> None:
+    """It was said to stay straight, beside the same belt as it swings."""
+    html = made(whole).html
+    assert "In this run the belt does not buckle; it is drawn without vibration." in html
+    assert "Belt in motion: belt_motion" in html and "straight in this run" not in html
+
+
 def test_a_linkage_that_does_not_give_the_recorded_travel_is_not_drawn(
     demo: Trace, monkeypatch: pytest.MonkeyPatch
 ) -> None:

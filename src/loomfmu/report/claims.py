@@ -32,7 +32,7 @@ def section(subject: Subject) -> Section | None:
     if not rows:
         return None
     html = template("claims.html.j2").render(runs=outcomes(subject), rows=rows)
-    return Section("claims", "Claims", html, ("claims.js",), of_first=False)
+    return Section("claims", "Claims", html, ("claims.js",), of_one=False)
 
 
 def side_by_side(runs: Sequence[Sequence[Verdict]]) -> list[list[Verdict | None]]:

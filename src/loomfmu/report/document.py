@@ -32,7 +32,7 @@ def write(
     """Write the report of a trace, with others laid over it, and return its path.
 
     Args:
-        traces: traces or their files; the first one is judged and shown in motion
+        traces: traces or their files; that with the worst claim is shown in motion
         output: the file; by default beside the first trace, with `.html` for `.h5`, and named after all of
             several, such as `worn_and_new.html`
         overwrite: also replace a file that is not a report
@@ -68,7 +68,7 @@ def page(subject: Subject, comparison: Comparison | None = None) -> str:
 
 def _compared(comparison: Comparison) -> Section:
     """Return the differences between the traces, as a notebook shows them."""
-    return Section("comparison", "Comparison", comparison._repr_html_(), of_first=False)
+    return Section("comparison", "Comparison", comparison._repr_html_(), of_one=False)
 
 
 def sections(subject: Subject) -> list[Section]:
@@ -99,13 +99,19 @@ def assembled(
         runs=runs,
         software=str(trace.attributes["software"]),
         sections=sections,
-        first=labels(subject.traces)[0] if several else "",
+        one=_one(subject) if several else "",
         policy=policy,
         style="\n".join([text("style.css"), *(section.style for section in sections)]),
         cursor=text("cursor.js"),
         axis=embedded(_axis(subject)),
     )
     return mark + body
+
+
+def _one(subject: Subject) -> str:
+    """Return which of several traces some sections are of."""
+    which = "the trace with the worst claim" if subject.worst is not None else "the first trace"
+    return f"Of {labels(subject.traces)[subject.shown]} alone, {which}. The plots show all traces."
 
 
 def _axis(subject: Subject) -> dict[str, Any]:

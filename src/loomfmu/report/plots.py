@@ -108,12 +108,13 @@ def section(subject: Subject) -> Section | None:
     )
     data = {
         "traces": along * len(LIVE) if subject.live else along,
+        "drawn": subject.shown,
         "labels": names_of_curves,
         "signals": signals,
         "first": claimed or names[:1],
     }
     scripts = ("plots.js", "live_plots.js") if subject.live else ("plots.js",)
-    return Section("plots", "Plots", html, scripts, data, "uplot/uPlot", of_first=False)
+    return Section("plots", "Plots", html, scripts, data, "uplot/uPlot", of_one=False)
 
 
 def _points(subject: Subject, names: list[str]) -> int:

@@ -5,6 +5,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -32,7 +33,7 @@ class Section:
     scripts: tuple[str, ...] = ()
     data: Any = None
     library: str = ""
-    of_first: bool = True  # whether it shows the first trace alone
+    of_one: bool = True  # whether it shows a single trace
 
     @property
     def code(self) -> str:
@@ -74,7 +75,7 @@ def _plain(data: Any) -> Any:
 
 @dataclass(frozen=True)
 class Subject:
-    """The subject of a report: its traces, the first of which is judged and shown in motion.
+    """The subject of a report: its traces, of which one is shown in motion.
 
     On a `live` page the FMUs themselves run: what it draws and judges then changes with each run.
 
@@ -84,19 +85,24 @@ class Subject:
     traces: Sequence[Trace]
     live: bool = False
 
+    @cached_property
+    def shown(self) -> int:
+        """The number of the trace that is shown in motion: that of the worst verdict, else the first."""
+        return next((number for number, each in enumerate(self._placed) if self.worst in each), 0)
+
     @property
     def trace(self) -> Trace:
-        """The first trace."""
-        return self.traces[0]
+        """The trace that is shown in motion."""
+        return self.traces[self.shown]
 
     @cached_property
     def turns(self) -> bool:
-        """Return whether a shaft turns: then positions are its angles."""
-        return self.trace.turns
+        """Return whether a shaft turns in the first trace: then positions are its angles."""
+        return self.traces[0].turns
 
     @cached_property
     def positions(self) -> NDArray[np.float64]:
-        """Position of each sample of the first trace."""
+        """Position of each sample of the trace that is shown."""
         return self.along(self.trace)
 
     def along(self, trace: Trace) -> NDArray[np.float64]:
@@ -115,9 +121,15 @@ class Subject:
         One that fails comes before one that is undecided, and that before one that holds; then the one
         nearest to its bound or farthest beyond it, one without a distance last.
         """
-        placed = (each for trace in self.traces for each in trace.verdicts if self.position(each) is not None)
         order = lambda each: (each.holds, not each.decided, math.isnan(each.away), each.away)  # noqa: E731
-        return min(placed, key=order, default=None)
+        return min(chain.from_iterable(self._placed), key=order, default=None)
+
+    @cached_property
+    def _placed(self) -> list[list[Verdict]]:
+        """The verdicts of each trace that have a place."""
+        return [
+            [each for each in trace.verdicts if self.position(each) is not None] for trace in self.traces
+        ]
 
     @cached_property
     def start(self) -> float:

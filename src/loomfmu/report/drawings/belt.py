@@ -172,17 +172,18 @@ def between(tracks: Tracks, belt: Belt) -> Figure:
     _belt(sketch, belt, 2.0 * sketch.left, half)
     sketch.label(0.0, half, "guide", "end", (-4.0, -6.0))
     shape = (
-        "The belt is the exact elastica of the recorded deflection, pinned at both ends; it is drawn bent"
-        " upwards, and the head lags by the length that the bend takes up."
+        "The belt is drawn as its load bends it, without vibration: the exact elastica of the recorded"
+        " deflection, pinned at both ends, bent upwards and not exaggerated. The head lags by the length that"
+        " the bend takes up."
         if belt.slope
-        else "The belt stays straight in this run."
+        else "In this run the belt does not buckle; it is drawn without vibration."
     )
-    note = motion.note if motion else f"{shape} The deflection is not exaggerated."
-    does = "" if live or motion else f", which {'buckles' if belt.slope else 'stays straight'} in this run"
+    note = motion.note if motion else shape
+    does = "" if live or motion else f", which {'buckles' if belt.slope else 'does not buckle'} in this run"
     values = [Value("free length", belt.outside, "mm"), Value("deflection", belt.deflection, "mm")]
     return sketch.figure(
         f"belt-{belt.name}",
-        title("Belt between guide and head", belt.name, "belt"),
+        title("Belt in motion" if motion else "Belt between guide and head", belt.name, "belt"),
         f"The free section of the belt between its guide and the rapier head{does}.",
         [*values, Value("drawn", motion.magnified, "times as large")] if motion else values,
         f"{note} Dark orange: outside the guide and compressed.",

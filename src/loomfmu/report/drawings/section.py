@@ -28,7 +28,7 @@ DRAWN = {
 
 
 def sections(subject: Subject) -> list[Section]:
-    """The whole loom and its mechanisms in motion, of the first trace; nothing if it records none of them."""
+    """The whole loom and its mechanisms in motion; nothing if the trace records none of them."""
     if not any(instances(subject.trace, fmu, *signals) for fmu, signals in DRAWN.items()):
         return []
     if subject.turns and subject.gap > COARSEST:
