@@ -16,7 +16,7 @@ from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.wiring import gathered
 from loomfmu.declaring.variables import variables_of
 from loomfmu.errors import LoomfmuError
-from loomfmu.physics.driven_shaft import driven_motion
+from loomfmu.physics.driven_shaft import driven_motion, response
 
 MP = mpmath.mp.clone()
 MP.dps = 120
@@ -120,7 +120,7 @@ def test_nothing_is_lost_in_steps_that_are_too_small_to_be_seen():
     velocity, angle = under(MP.mpf(1e-6), 20000 * MP.mpf(1e-9), shaft)
     assert shaft.velocity == pytest.approx(float(velocity), rel=2.3e-16)  # the last digit
     assert shaft.angle == pytest.approx(float(angle), rel=3e-16)
-    gained, *_means = driven_motion(FULL, -1e-6, 0.0, 0.0, 1e-9, 2.0, 40.0)
+    gained, *_means = driven_motion(FULL, -1e-6, 0.0, 0.0, response(1e-9, 2.0, 40.0))
     assert FULL + gained == FULL != shaft.velocity
 
 

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from loomfmu.physics.driven_shaft import bulge_for, driven_motion, summed, work_of
+from loomfmu.physics.driven_shaft import bulge_for, driven_motion, response, summed, work_of
 
 MP = mpmath.mp.clone()
 MP.dps = 200  # the closed form divides by k^2: with k h / J = 1e-18 it cancels 54 digits
@@ -19,7 +19,7 @@ decades = st.floats(-9.0, 3.0)
 
 def moved(net, rise, duration, inertia, slope):
     """Change of velocity and angle beyond that at the initial velocity, under a load on a straight line."""
-    gained, more, _second, _third = driven_motion(0.0, net, rise, 0.0, duration, inertia, slope)
+    gained, more, _second, _third = driven_motion(0.0, net, rise, 0.0, response(duration, inertia, slope))
     return gained, more * duration
 
 
@@ -92,7 +92,7 @@ def along(share, velocity, net, rise, bulge, duration, inertia, slope):
 )
 def test_motion_and_work_are_exact_for_a_load_on_a_parabola(velocity, net, rise, bulge, size, mass, slope):
     step = (10.0**size, 10.0**mass, slope)
-    gained, more, second, third = driven_motion(velocity, net, rise, bulge, *step)
+    gained, more, second, third = driven_motion(velocity, net, rise, bulge, response(*step))
 
     def at(share):
         return along(share, FINE.mpf(velocity), net, rise, bulge, *step)
@@ -121,22 +121,24 @@ def test_motion_and_work_are_exact_for_a_load_on_a_parabola(velocity, net, rise,
 def test_the_bulge_makes_torques_do_a_known_work(velocity, net, rise, size, slope):
     duration, inertia, start, wanted = 10.0**size, 2.0, 7.0, 0.3
     for way in (1.0, -1.0):
-        given = (way * start, way * rise, way * velocity, way * net, way * rise, duration, inertia, slope)
+        by = response(duration, inertia, slope)
+        given = (way * start, way * rise, way * velocity, way * net, way * rise, duration, by)
         bulge = bulge_for(wanted, *given)
-        step = driven_motion(way * velocity, way * net, way * rise, bulge, duration, inertia, slope)
-        gained, more, second, third = step
+        gained, more, second, third = driven_motion(way * velocity, way * net, way * rise, bulge, by)
         work = work_of(way * start, way * rise, bulge, duration, way * velocity + more, second, third)
         if way * (velocity * way + gained) > 0.0 and abs(gained) < velocity:
             # rounding of the work of either part
             assert work == pytest.approx(
                 wanted, abs=1e-12 * duration * velocity * (abs(rise) + abs(bulge) + 8.0)
             )
-    assert bulge_for(1.0, 7.0, 0.0, 0.0, 0.0, 0.0, 0.1, 2.0, 0.0) == 0.0  # at rest a torque does no work
+    assert (
+        bulge_for(1.0, 7.0, 0.0, 0.0, 0.0, 0.0, 0.1, response(0.1, 2.0, 0.0)) == 0.0
+    )  # at rest a torque does no work
 
 
 def test_work_that_cannot_be_done_stops_at_what_can():
     # to give away more than it has would need the root of a negative number
-    assert bulge_for(1e6, 0.0, 0.0, 1.0, 0.0, 0.0, 0.1, 2.0, 0.0) > 0.0
+    assert bulge_for(1e6, 0.0, 0.0, 1.0, 0.0, 0.0, 0.1, response(0.1, 2.0, 0.0)) > 0.0
 
 
 # Sums

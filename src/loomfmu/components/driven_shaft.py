@@ -7,7 +7,7 @@ from typing import ClassVar
 from ..declaring.arrays import array
 from ..declaring.declarations import at_step_end, input_, output, parameter, state
 from ..declaring.variables import Component, Problem, Terminal
-from ..physics.driven_shaft import bulge_for, driven_motion, summed, work_of
+from ..physics.driven_shaft import bulge_for, driven_motion, response, summed, work_of
 from ..physics.motor import Motor, line_at
 from ..physics.shaft_friction import MOST_GROWTH, parted_motion, sense_of, stopping_share
 from .quantities import ANGLE, FRICTION, INERTIA, LOAD_TORQUE, LOAD_WORK, TORQUE, TURNING
@@ -179,6 +179,7 @@ class DrivenShaft(Component):
         )
         gained, more, second, third = 0.0, 0.0, 0.0, 0.0
         if not grows:
+            by = response(step_size, self.inertia, slope)
             if self.inputs_at_step_end:
                 bulge = bulge_for(
                     work - self.coupled_work,
@@ -188,12 +189,9 @@ class DrivenShaft(Component):
                     net,
                     rise,
                     step_size,
-                    self.inertia,
-                    slope,
+                    by,
                 )
-            gained, more, second, third = driven_motion(
-                self.velocity, net, rise, bulge, step_size, self.inertia, slope
-            )
+            gained, more, second, third = driven_motion(self.velocity, net, rise, bulge, by)
         mean = self.velocity + more
         path = mean * sense
         parted = grows or self.leaves(net, rise, gained, step_size, slope, sense, below, above)

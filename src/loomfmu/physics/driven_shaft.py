@@ -13,18 +13,44 @@ duration `h`, with the share `u` of the step, the load is
 `dT` is its rise over the step and `B`, its bulge, what its mean exceeds that of the straight line by.
 """
 
+from dataclasses import dataclass
 from math import sqrt
 
 from .warp import fading
 
 
+@dataclass(frozen=True)
+class Response:
+    """Response of the velocity to torques over a step: `h / J`, and the moments of `fading` for `z`."""
+
+    gain: float
+    i0: float
+    i1: float
+    i2: float
+    i3: float
+    i4: float
+    i5: float
+
+
+def response(duration: float, inertia: float, slope: float) -> Response:
+    """Return the response of a shaft over a step, with `z = k h / J`.
+
+    Args:
+        duration: of the step, h [s]
+        inertia: J [kg m2], positive
+        slope: of the motor's torque line, k [N m s/rad]; where it is negative z is at least -3
+    """
+    _kept, i0, i1, i2, i3, i4, i5, _i6 = fading(slope * duration / inertia)
+    return Response(duration / inertia, i0, i1, i2, i3, i4, i5)
+
+
 def driven_motion(
-    velocity: float, net: float, rise: float, bulge: float, duration: float, inertia: float, slope: float
+    velocity: float, net: float, rise: float, bulge: float, by: Response
 ) -> tuple[float, float, float, float]:
     """Change of velocity over a step, and the moments of the velocity that angle and work follow from.
 
-    With `z = k h / J` and the moments of `fading`, `I_n = integral of exp(-z (1 - u)) u^n`, a part `u^n` of
-    the net torque contributes `h / J I_n` to the velocity, and to its m-th repeated integral over the step
+    With the moments of `fading`, `I_n = integral of exp(-z (1 - u)) u^n`, a part `u^n` of the net torque
+    contributes `h / J I_n` to the velocity, and to its m-th repeated integral over the step
     `h / J I_(n+m) n! / (n + m)!`. Nothing cancels, whether `z` is zero, tiny or huge. Nothing is divided by
     `k`, which is 0 when coasting.
 
@@ -32,28 +58,24 @@ def driven_motion(
         velocity: at the start of the step [rad/s]
         net: torque of the motor less that of the load at the start of the step, N0 [N m]
         rise, bulge: of the load over the step, dT and B [N m]
-        duration: of the step, h [s]
-        inertia: J [kg m2], positive
-        slope: of the motor's torque line, k [N m s/rad]; where it is negative z is at least -3
+        by: response of the shaft over the step
 
     Returns:
         change of velocity [rad/s], mean of the velocity less that at the start, mean of (1 - u) times the
         velocity, mean of (1 - u)^2 / 2 times the velocity [rad/s]
 
-    >>> driven_motion(0.0, 6.0, 0.0, 0.0, 2.0, 3.0, 0.0)[:2]  # 2 rad/s2 for 2 s
+    >>> driven_motion(0.0, 6.0, 0.0, 0.0, response(2.0, 3.0, 0.0))[:2]  # 2 rad/s2 for 2 s
     (4.0, 2.0)
-    >>> driven_motion(0.0, 6.0, 0.0, 0.0, 1e6, 3.0, 2.0)[0]  # in the end the speed has changed by N0 / k
+    >>> driven_motion(0.0, 6.0, 0.0, 0.0, response(1e6, 3.0, 2.0))[0]  # in the end it has changed by N0 / k
     3.0
     """
-    _kept, i0, i1, i2, i3, i4, i5, _i6 = fading(slope * duration / inertia)
-    gain = duration / inertia
     linear = -rise - 6.0 * bulge
     square = 6.0 * bulge
     return (
-        gain * (net * i0 + linear * i1 + square * i2),
-        gain * (net * i1 + linear * i2 / 2.0 + square * i3 / 3.0),
-        0.5 * velocity + gain * (net * i2 / 2.0 + linear * i3 / 6.0 + square * i4 / 12.0),
-        velocity / 6.0 + gain * (net * i3 / 6.0 + linear * i4 / 24.0 + square * i5 / 60.0),
+        by.gain * (net * by.i0 + linear * by.i1 + square * by.i2),
+        by.gain * (net * by.i1 + linear * by.i2 / 2.0 + square * by.i3 / 3.0),
+        0.5 * velocity + by.gain * (net * by.i2 / 2.0 + linear * by.i3 / 6.0 + square * by.i4 / 12.0),
+        velocity / 6.0 + by.gain * (net * by.i3 / 6.0 + linear * by.i4 / 24.0 + square * by.i5 / 60.0),
     )
 
 
@@ -81,8 +103,7 @@ def bulge_for(
     net: float,
     net_rise: float,
     duration: float,
-    inertia: float,
-    slope: float,
+    by: Response,
 ) -> float:
     """The bulge [N m] with which torques do a known work over a step.
 
@@ -96,14 +117,17 @@ def bulge_for(
         work: of the torques over the step [J]
         start, rise: of these torques [N m]
         net, net_rise: net torque at the start of the step, and the rise of the whole load [N m]
+        duration: of the step [s]
+        by: response of the shaft over it
 
-    >>> bulge_for(44.0, 3.0, 2.0, 5.0, 0.0, 0.0, 2.0, 1e300, 0.0)  # 4 N m over 10 rad, and 4 J more
+    >>> steady = response(2.0, 1e300, 0.0)
+    >>> bulge_for(44.0, 3.0, 2.0, 5.0, 0.0, 0.0, 2.0, steady)  # 4 N m over 10 rad, and 4 J more
     0.4
     """
     if velocity == 0.0 or duration == 0.0:
         return 0.0
-    _gain, more, second, third = driven_motion(velocity, net, net_rise, 0.0, duration, inertia, slope)
-    _gain, first_by, second_by, third_by = driven_motion(0.0, 0.0, 0.0, 1.0, duration, inertia, slope)
+    _gain, more, second, third = driven_motion(velocity, net, net_rise, 0.0, by)
+    _gain, first_by, second_by, third_by = driven_motion(0.0, 0.0, 0.0, 1.0, by)
     mean = velocity + more
     missing = work - work_of(start, rise, 0.0, duration, mean, second, third)
     by_bulge = work_of(0.0, 0.0, 1.0, duration, mean, second, third) + work_of(

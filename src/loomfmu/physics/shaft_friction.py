@@ -8,7 +8,7 @@ at most, so no event is missed.
 
 from math import fabs, inf
 
-from .driven_shaft import driven_motion
+from .driven_shaft import driven_motion, response
 from .motor import Motor, line_at
 from .numerics.brackets import at_root
 
@@ -45,7 +45,8 @@ def stopping_share(
     >>> stopping_share(3.0, -4.0, 0.0, 3.0, 2.0, 0.0, 1.0)  # after 1.5 s
     0.5
     """
-    gained, _more, _second, _third = driven_motion(velocity, net, rise, 0.0, duration, inertia, slope)
+    by = response(duration, inertia, slope)
+    gained, _more, _second, _third = driven_motion(velocity, net, rise, 0.0, by)
     high = 1.0
     if sense * (velocity + gained) > 0.0:
         if not (sense * net < 0.0 and sense * (net - rise - slope * gained) > 0.0):
@@ -53,31 +54,27 @@ def stopping_share(
         low = 0.0
         for _ in range(HALVINGS):  # where the velocity turns
             u = 0.5 * (low + high)
-            gained, _more, _second, _third = driven_motion(
-                velocity, net, rise * u, 0.0, duration * u, inertia, slope
-            )
+            by = response(duration * u, inertia, slope)
+            gained, _more, _second, _third = driven_motion(velocity, net, rise * u, 0.0, by)
             if sense * (net - rise * u - slope * gained) < 0.0:
                 low = u
             else:
                 high = u
-        gained, _more, _second, _third = driven_motion(
-            velocity, net, rise * high, 0.0, duration * high, inertia, slope
-        )
+        by = response(duration * high, inertia, slope)
+        gained, _more, _second, _third = driven_motion(velocity, net, rise * high, 0.0, by)
         if sense * (velocity + gained) > 0.0:
             return 1.0
     low = 0.0
     for _ in range(HALVINGS):
         u = 0.5 * (low + high)
-        gained, _more, _second, _third = driven_motion(
-            velocity, net, rise * u, 0.0, duration * u, inertia, slope
-        )
+        by = response(duration * u, inertia, slope)
+        gained, _more, _second, _third = driven_motion(velocity, net, rise * u, 0.0, by)
         if sense * (velocity + gained) > 0.0:
             low = u
         else:
             high = u
-    gained, _more, _second, _third = driven_motion(
-        velocity, net, rise * high, 0.0, duration * high, inertia, slope
-    )
+    by = response(duration * high, inertia, slope)
+    gained, _more, _second, _third = driven_motion(velocity, net, rise * high, 0.0, by)
     rate = duration * (net - rise * high - slope * gained) / inertia
     return at_root(high, velocity + gained, rate)
 
@@ -99,12 +96,12 @@ def mean_square(
         total = 0.0
         for number in range(4):
             u = NODES[number]
-            gained, _more, _second, _third = driven_motion(
-                velocity, net, rise * u, 0.0, duration * u, inertia, slope
-            )
+            by = response(duration * u, inertia, slope)
+            gained, _more, _second, _third = driven_motion(velocity, net, rise * u, 0.0, by)
             total = total + WEIGHTS[number] * (velocity + gained) * (velocity + gained)
         return total
-    gained, more, second, _third = driven_motion(velocity, net, rise, 0.0, duration, inertia, slope)
+    by = response(duration, inertia, slope)
+    gained, more, second, _third = driven_motion(velocity, net, rise, 0.0, by)
     mean = velocity + more
     kept = inertia * gained * (velocity + 0.5 * gained) / duration
     return ((net + slope * velocity) * mean - rise * (mean - second) - kept) / slope
@@ -174,9 +171,8 @@ def parted_motion(
                 share = sooner
                 end = above
         part = part * share
-        gained, more, by_second, _third = driven_motion(
-            now, net, rise * part, 0.0, duration * part, inertia, slope
-        )
+        by = response(duration * part, inertia, slope)
+        gained, more, by_second, _third = driven_motion(now, net, rise * part, 0.0, by)
         low = low + part
         mean = mean + part * (now + more)
         second = second + part * ((1.0 - low) * (now + more) + part * by_second)

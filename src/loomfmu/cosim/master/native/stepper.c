@@ -275,8 +275,7 @@ static bool settle(const struct plan *plan, double start, double size, struct ou
         if (!perform_all(plan, loop->first, loop->end, start, size, outcome))
             return false;
         move_values(plan, search.found, true);
-        bool same = !memcmp(loop->integers, plan->integers, wholes);
-        progress = broyden_next(&loop->rule, &loop->solver, &search, same);
+        progress = broyden_next(&loop->rule, &loop->solver, &search, loop->integers, plan->integers, wholes);
     }
     if (progress == UNSETTLED)
         outcome->status = NOT_SETTLED;

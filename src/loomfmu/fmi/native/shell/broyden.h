@@ -10,6 +10,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 struct rule { /* loops.py describes its numbers */
     int64_t most_exchanges, few, stalls, orders;
@@ -114,9 +115,9 @@ static bool broyden_close(const struct rule *rule, const struct solver *solver, 
     return close;
 }
 
-/* Take what came out of the guess, and guess again; `same` says whether what is not real came out as it went in. */
+/* Take what came out of the guess, and guess again. What is not real must come out as it went in: `size` bytes. */
 static enum progress broyden_next(const struct rule *rule, const struct solver *solver, struct search *search,
-                                  bool same)
+                                  const void *went_in, const void *came_out, size_t size)
 {
     size_t count = solver->count;
     double left;
@@ -126,7 +127,7 @@ static enum progress broyden_next(const struct rule *rule, const struct solver *
     bool close = broyden_close(rule, solver, search, &left);
     search->stalls = left >= 0.5 * search->least ? search->stalls + 1 : 0;
     bool rounded = search->exchanges >= rule->few && search->stalls >= rule->stalls && left <= rule->rounding;
-    if ((close || rounded) && same) {
+    if ((close || rounded) && memcmp(went_in, came_out, size) == 0) {
         for (size_t place = 0; place < count; place++)
             solver->largest[place] = fmax(solver->largest[place], fabs(search->found[place]));
         return SETTLED;

@@ -57,7 +57,7 @@ typedef struct {
     bool stale;       /* the start is to be computed from what was set since */
     bool carried;     /* inputs are carried to the end of each step */
     unsigned char given[VARIABLES]; /* bit n - 1: the derivative of order n was given for this step */
-    double derivatives[VARIABLES][HIGHEST_ORDER];
+    double derivatives[VARIABLES][HIGHEST_ORDER]; /* the last member: not copied where not carried */
 } State;
 
 typedef struct {

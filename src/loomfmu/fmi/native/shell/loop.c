@@ -54,7 +54,7 @@ static Status fmu_settle(Instance *instance, Pass pass, bool *settled)
         fmu_values(instance, loop_sources, LOOP_VALUES, memory.values);
         fmu_values(instance, loop_wholes, LOOP_WHOLES, wholes[1]);
         memcpy(search.found, memory.values, LOOP_REALS * sizeof(double));
-        progress = broyden_next(&loop_rule, &solver, &search, memcmp(wholes[0], wholes[1], sizeof wholes[0]) == 0);
+        progress = broyden_next(&loop_rule, &solver, &search, wholes[0], wholes[1], sizeof wholes[0]);
     }
     *settled = progress == SETTLED;
     component->loop = memory;

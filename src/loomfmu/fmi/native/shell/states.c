@@ -190,6 +190,12 @@ typedef struct {
     State state;
 } Saved;
 
+/* Copies a state; the derivatives of inputs, most of its bytes, where a host has given some. */
+static void fmu_copy_state(State *to, const State *from)
+{
+    memcpy(to, from, from->carried ? sizeof *to : offsetof(State, derivatives));
+}
+
 /* The copy behind a handle, or NULL and a message. A pointer that was never a handle cannot be recognised. */
 static Saved *fmu_saved(Instance *instance, void *handle)
 {
@@ -224,17 +230,11 @@ static Saved *fmu_provide(Instance *instance, void **handle)
 
 static Status fmu_save(Instance *instance, const char *function, void **handle)
 {
-    Saved *saved;
-    State present;
-    if (!fmu_allowed(instance, MODES, function)) {
-        return FAILED;
-    }
-    present = instance->state; /* a complaint would change it */
-    saved = fmu_provide(instance, handle);
+    Saved *saved = fmu_allowed(instance, MODES, function) ? fmu_provide(instance, handle) : NULL;
     if (saved == NULL) {
         return FAILED;
     }
-    saved->state = present;
+    fmu_copy_state(&saved->state, &instance->state);
     return OK;
 }
 
@@ -254,7 +254,7 @@ static Status fmu_restore(Instance *instance, const char *function, void *handle
     if (!fmu_fits(instance, &saved->state)) {
         return fmu_complain(instance, FAILED, "the FMU state belongs to another interface type");
     }
-    instance->state = saved->state;
+    fmu_copy_state(&instance->state, &saved->state);
     return OK;
 }
 
