@@ -89,7 +89,13 @@ def _loom() -> Standard:
     return loom
 
 
-hand_down(_loom)
+def _bars() -> Any:
+    from .studies.tolerances.error_bars import error_bars
+
+    return error_bars
+
+
+hand_down(_loom, _bars)
 
 
 def __getattr__(name: str) -> Any:

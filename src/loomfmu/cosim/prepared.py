@@ -36,9 +36,12 @@ from .rows import RowsInC
 from .scenes.instances import altered
 from .scenes.scene import Scene
 from .scenes.values import Values
+from .standard import error_bars
 from .tangents import Direction, Tangents, seeds_of
 
 Errors = Literal["all", "near", "none"]  # which verdicts get an estimate of their numerical error
+Move = tuple[Mapping[str, Any], float]  # settings, and the change of the value that they make
+Notes = Callable[[tuple[Verdict, ...]], tuple[Verdict, ...]]  # verdicts with more in their notes
 KINDS = {"Real": float, "Integer": int, "Boolean": bool}
 MOST_PATTERNS = 8  # that are kept ready, such as one for each machine
 
@@ -210,10 +213,14 @@ class Pattern:
         flavour: str,
         overwrite: bool,
         progress: bool,
-        remarks: Mapping[int, str],
+        notes: Callable[[], Notes],
     ) -> Result:
-        """Run the scene, record it to a file, and judge its claims; `remarks` are added to their notes."""
+        """Run the scene, record it to a file, and judge its claims.
+
+        `notes` finds, once the steps are chosen, what to note with the verdicts.
+        """
         scene, coarser, chosen = self._with_steps(scene)
+        noted = notes()
         needed = self._requested.needed(self._all, self._requested.recorded)
         signals = list(dict.fromkeys([*needed, *self._estimates.shown]))
         stepping = self.stepping(signals)
@@ -242,7 +249,7 @@ class Pattern:
                         raise Interrupted from None
             # third-party instances are still there: one that crashes when it is freed takes nothing with it
             judge = partial(self._estimated, scene, coarser)
-            verdicts, trace = finish(lambda trace: remarked(judge(trace), remarks), writer, path, early)
+            verdicts, trace = finish(lambda trace: noted(judge(trace)), writer, path, early)
         return Result(
             scene,
             verdicts,
@@ -348,15 +355,19 @@ class Prepared:
         except LoomfmuError:
             return False
 
-    def derived(self, set: Mapping[str, Any], moves: Sequence[tuple[Mapping[str, Any], float]]) -> Derived:
+    def derived(self, set: Mapping[str, Any], moves: Sequence[Move]) -> Derived:
         """Run what the claims need with these values, and derive it by some of them.
 
         Each move is a change of one of the values, with the settings after it. Raises LoomfmuError where
         values have no derivatives, or FMUs.
         """
         with self._turn:
-            pattern, scene = self._ready(dict(set))
-            return pattern.derived(scene, [(self._ready({**set, **to})[1], change) for to, change in moves])
+            return self._derived(set, *self._ready(dict(set)), moves)
+
+    def _derived(
+        self, given: Mapping[str, Any], pattern: Pattern, scene: Scene, moves: Sequence[Move]
+    ) -> Derived:
+        return pattern.derived(scene, [(self._ready({**given, **to})[1], change) for to, change in moves])
 
     def run(
         self,
@@ -371,7 +382,17 @@ class Prepared:
         with self._turn:
             pattern, scene = self._ready(set)
             path = own_path(scene, progress) if output is None else path_of(output, "output")
-            return pattern.run(scene, path, self._flavour, overwrite, progress, remarks or {})
+            notes = partial(self._notes, set or {}, pattern, scene, remarks or {})
+            return pattern.run(scene, path, self._flavour, overwrite, progress, notes)
+
+    def _notes(
+        self, given: Mapping[str, Any], pattern: Pattern, scene: Scene, remarks: Mapping[int, str]
+    ) -> Notes:
+        """Return what adds remarks to verdicts, and their error bars where a scene has tolerances."""
+        if not (scene.tolerances and scene.claims):
+            return partial(remarked, remarks=remarks)
+        barred = error_bars(scene, partial(self._derived, given, pattern, scene), len(scene.claims))
+        return lambda verdicts: barred(remarked(verdicts, remarks))
 
     def close(self) -> None:
         """Free the instances; a later run makes new ones."""

@@ -1,4 +1,7 @@
-"""The machine that scenes need not spell out, and the claims on it: the top of the package hands it down."""
+"""The machine that scenes need not spell out, the claims on it, and the error bars of verdicts.
+
+The top of the package hands them down.
+"""
 
 from collections.abc import Callable, Iterable, Mapping
 from functools import cache
@@ -46,16 +49,23 @@ class Standard(Protocol):
         """Return warnings about instances that are taken to move alike, but do not."""
 
 
-_handed: list[Callable[[], Standard]] = []
+_handed: list[Callable[[], Any]] = []
 
 
-def hand_down(import_it: Callable[[], Standard]) -> None:
-    """Take the function that imports the machine, when it is first needed."""
-    _handed[:] = [import_it]
+def hand_down(import_machine: Callable[[], Standard], import_bars: Callable[[], Any]) -> None:
+    """Take the functions that import the machine and `error_bars`, when they are first needed."""
+    _handed[:] = [import_machine, import_bars]
     standard.cache_clear()
 
 
 @cache
 def standard() -> Standard:
     """Return the machine."""
-    return _handed[0]()
+    found: Standard = _handed[0]()
+    return found
+
+
+def error_bars(scene: Any, derive: Callable[..., Any], claims: int) -> Callable[[Any], Any]:
+    """Return the function that adds the error bars by tolerances to the verdicts on the claims of a scene."""
+    found: Callable[[Any], Any] = _handed[1]()(scene, derive, claims)
+    return found

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -15,7 +15,7 @@ from .. import units
 from ..cosim.claims.claims import name_of
 from ..cosim.claims.expressions import is_expression
 from ..cosim.claims.measures import signal_in
-from ..cosim.prepared import Prepared
+from ..cosim.prepared import Move, Prepared
 from ..cosim.reading import requested
 from ..cosim.scenes.scene import Scene
 from ..display import notebook
@@ -23,7 +23,6 @@ from ..errors import LoomfmuError, shown, suggestion
 from ..sweeps.varied import Varied, varied
 from ..traces import Verdict
 
-Move = tuple[Mapping[str, Any], float]  # settings, and the change of the value that they make
 CHANGE = 2.0**-10  # of a value: start values that follow it are found by what changes with it
 
 
@@ -116,7 +115,8 @@ def gradient(
     places = [claims[each] if each in claims else first + measures.index(each) for each in of]
     verdicts = [found.verdicts[place] for place in places]
     for name, verdict in zip(of, verdicts, strict=True):
-        _check(loom.scene, name, verdict)
+        if why := without_gradient(loom.scene, verdict):
+            raise LoomfmuError(f"of {shown(name)}: {why}")
 
     def numbers(judged: Sequence[Verdict]) -> list[float]:
         return [number_of(judged[place], place < first) for place in places]
@@ -156,14 +156,13 @@ def move_of(scene: Scene, parameter: Varied, value: float | None = None) -> Move
     return {parameter.key: parameter.setting(moved)}, moved - at
 
 
-def _check(scene: Scene, name: str, verdict: Verdict) -> None:
-    """Refuse what has no derivative. Raises LoomfmuError."""
+def without_gradient(scene: Scene, verdict: Verdict) -> str:
+    """Return why what a verdict is on has no derivative; an empty text if it has one."""
     owner, _, variable = verdict.signal.partition(".")
     ports = scene.instances[owner].fmu.ports if owner in scene.instances else {}
     if variable in ports and ports[variable].kind != "Real":  # a claim on two signals names a difference
-        raise LoomfmuError(f"of {shown(name)}: it counts or decides, so it has no derivative")
-    if not math.isfinite(verdict.worst):
-        raise LoomfmuError(f"of {shown(name)}: it has no value{verdict.note and f' ({verdict.note})'}")
+        return "it counts or decides, so it has no derivative"
+    return "" if math.isfinite(verdict.worst) else f"it has no value{verdict.note and f' ({verdict.note})'}"
 
 
 def number_of(verdict: Verdict, claim: bool = True) -> float:

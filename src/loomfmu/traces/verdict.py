@@ -40,6 +40,9 @@ class Verdict:
     `decided`, and does not hold. `spread` is the part of the error that differs between resolutions,
     `between` what the curves between samples may be off by, and `unsettled` says, as the note does, that a
     longer run comes nearer to the bound; traces keep none of them.
+
+    `loss` is the most that tolerances may take from the distance, and `deviation` the standard deviation that
+    they give it, in `unit` and to first order; NaN where the scene has no tolerances, or the note says why.
     """
 
     claim: str
@@ -59,6 +62,8 @@ class Verdict:
     spread: float = field(default=math.nan, compare=False)
     unsettled: str = field(default="", compare=False)
     between: float = field(default=0.0, compare=False)
+    loss: float = field(default=math.nan, compare=False)
+    deviation: float = field(default=math.nan, compare=False)
 
     def __bool__(self) -> bool:
         return self.holds
@@ -180,6 +185,9 @@ class Verdict:
         known = {field.name: getattr(self, field.name) for field in fields(self)}
         for name in ("display_unit", "spread", "unsettled", "between"):
             del known[name]
+        for name in ("loss", "deviation"):
+            if math.isnan(known[name]):
+                del known[name]
         known |= {"distance": self.distance, "relative_distance": self.relative_distance}
         display = {name: self.displayed(known[name]) for name in ("bound", "worst", "distance", "error")}
         return _finite(known) | {"display": _finite(display) | {"unit": self.label}}

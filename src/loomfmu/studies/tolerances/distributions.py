@@ -77,7 +77,7 @@ def _ends(variable: Varied, given: Sequence[Any], where: str) -> tuple[float, fl
 
 def _normal(variable: Varied, table: Mapping[str, Any], where: str, doubts: tuple[str, ...]) -> Distribution:
     """A normal distribution, or the part of it within two ends."""
-    from scipy import stats
+    from scipy.special import ndtr, ndtri
 
     mean = float(variable.read(table["normal"][0]))
     with within(where):
@@ -85,20 +85,21 @@ def _normal(variable: Varied, table: Mapping[str, Any], where: str, doubts: tupl
     if not 0.0 < deviation < math.inf:
         raise LoomfmuError(f"{where}: the standard deviation {variable.show(deviation)} must be positive")
     text = f"normal, mean {variable.show(mean)}, standard deviation {variable.show(deviation)}"
-    if "within" not in table:
-        return Distribution(
-            variable, text, stats.norm(mean, deviation).ppf, (-math.inf, math.inf), None, doubts
-        )
-    low, high = _ends(variable, table["within"], where)
-    if not low <= mean <= high:
-        raise LoomfmuError(
-            f"{where}: the mean {variable.show(mean)} is not within {_range(variable, low, high)}"
-        )
-    cut = stats.truncnorm((low - mean) / deviation, (high - mean) / deviation, mean, deviation)
-    text += f", within {_range(variable, low, high)}"
-    return Distribution(
-        variable, text, lambda share: np.clip(cut.ppf(share), low, high), (low, high), None, doubts
-    )
+    low, high = -math.inf, math.inf
+    if "within" in table:
+        low, high = _ends(variable, table["within"], where)
+        if not low <= mean <= high:
+            raise LoomfmuError(
+                f"{where}: the mean {variable.show(mean)} is not within {_range(variable, low, high)}"
+            )
+        text += f", within {_range(variable, low, high)}"
+    below, above = (float(ndtr((end - mean) / deviation)) for end in (low, high))
+
+    def quantiles(share: Floats) -> Floats:
+        found: Floats = np.clip(mean + deviation * ndtri(below + share * (above - below)), low, high)
+        return found
+
+    return Distribution(variable, text, quantiles, (low, high), None, doubts)
 
 
 def _range(variable: Varied, low: float, high: float) -> str:

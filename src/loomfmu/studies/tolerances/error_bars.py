@@ -1,0 +1,108 @@
+"""Error bars of verdicts by the tolerances of a scene, to first order: by the gradients of the claims."""
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from ...cosim.prepared import Derived, Move, Notes
+from ...cosim.scenes.scene import Scene
+from ...errors import LoomfmuError
+from ...sweeps.varied import Varied
+from ...traces import Verdict
+from ...traces.verdict import remarked
+from ..fitting.measured import Floats
+from ..gradient import move_of, without_gradient
+from ..span import port_of
+from .distributions import Distribution, distribution_of
+from .results import SAME
+from .tolerances import check_twice
+
+Derive = Callable[[Sequence[Move]], Derived]
+SHARES = (np.arange(10_000) + 0.5) / 10_000  # of all looms, by which a deviation is known to 1 %
+NONE = "no error bar by tolerances"
+
+
+@dataclass(frozen=True)
+class _Bar:
+    """The most that tolerances may take from the distance of a claim or add to it, and its deviation."""
+
+    loss: float
+    gain: float
+    deviation: float
+
+    def on(self, verdict: Verdict) -> Verdict:
+        """The verdict with this bar, which its note shows."""
+        loss = self.loss if math.isfinite(self.loss) else math.nan
+        return replace(*remarked([verdict], {0: self._text(verdict)}), loss=loss, deviation=self.deviation)
+
+    def _text(self, verdict: Verdict) -> str:
+        def share(size: float) -> str:
+            return f"{100.0 * size / abs(verdict.bound):.2g} %" if verdict.bound else verdict.shown(size, 2)
+
+        if max(self.loss, self.gain) <= SAME * (abs(verdict.bound) or abs(verdict.worst)):
+            return "tolerances do not move it (first order)"
+        loss, gain, deviation = map(share, (self.loss, self.gain, self.deviation))
+        if not math.isfinite(self.loss + self.gain):
+            return f"standard deviation {deviation} by tolerances (first order)"
+        ends = f"+-{loss}" if loss == gain else f"-{loss} to +{gain}"
+        return f"{ends} by tolerances (first order), standard deviation {deviation}"
+
+
+def error_bars(scene: Scene, derive: Derive, claims: int) -> Notes:
+    """Return what gives the verdicts on a scene's claims their error bars, or notes why one has none.
+
+    Raises LoomfmuError for tolerances that cannot be read.
+    """
+    found = [distribution_of(scene, *each) for each in scene.tolerances.items()]
+    check_twice(found)
+    values = [port_of(scene, each.varied)[1] for each in found]
+    for each, value in zip(found, values, strict=True):
+        if not each.ends[0] <= value <= each.ends[1]:
+            return _without(claims, f"{each.key} = {each.varied.show(value)} is outside its tolerance")
+    try:
+        slopes = _slopes(scene, derive, [each.varied for each in found], claims)
+    except LoomfmuError as error:
+        return _without(claims, str(error))
+    bars = [_bar(found, values, row) for row in slopes]
+
+    def barred(verdicts: tuple[Verdict, ...]) -> tuple[Verdict, ...]:
+        whys = {number: without_gradient(scene, each) for number, each in enumerate(verdicts)}
+        noted = remarked(verdicts, {number: f"{NONE}: {why}" for number, why in whys.items() if why})
+        return tuple(each if whys[number] else bars[number].on(each) for number, each in enumerate(noted))
+
+    return barred
+
+
+def _without(claims: int, why: str) -> Notes:
+    return partial(remarked, remarks=dict.fromkeys(range(claims), f"{NONE}: {why}"))
+
+
+def _slopes(scene: Scene, derive: Derive, keys: Sequence[Varied], claims: int) -> Floats:
+    """The slopes of the claims' distances by the values, shape (claims, values)."""
+    run = derive([move_of(scene, each) for each in keys])
+    columns = [
+        each.slope(lambda trace: [verdict.distance for verdict in run.judged(trace)[:claims]])
+        for each in run.directions
+    ]
+    return np.array(columns).T
+
+
+def _bar(found: Sequence[Distribution], values: Sequence[float], slopes: Floats) -> _Bar:
+    changes = [
+        [slope * (end - value) if slope else 0.0 for end in each.ends]
+        for each, value, slope in zip(found, values, slopes.tolist(), strict=True)
+    ]
+    loss, gain = (sum(max(0.0, *(side * each for each in ends)) for ends in changes) for side in (-1.0, 1.0))
+    return _Bar(loss, gain, math.hypot(*_deviations(found, slopes)))
+
+
+def _deviations(found: Sequence[Distribution], slopes: Floats) -> Iterator[float]:
+    """Yield the standard deviation of the distance by each value, or by all that were measured together."""
+    together: dict[object, Floats] = {}
+    for each, slope in zip(found, slopes.tolist(), strict=True):
+        source = each.measured or each.key
+        together[source] = together.get(source, 0.0) + slope * np.asarray(each.quantiles(SHARES))
+    yield from (float(np.std(each)) for each in together.values())
