@@ -1,7 +1,7 @@
-"""Our FMUs in other tools, and FMUs of others in ours: `make foreign` writes `results/foreign.md`.
+"""Our FMUs in other tools, and theirs and their packages in ours: `make foreign` writes `results/foreign.md`.
 
 Each trial is a process of its own, since some crash. `FOREIGN_FMUS` names folders, separated by `:`, of FMUs
-to try beside those that are made here; OMSimulator and PyFMI are tried where they can be imported.
+and packages to try beside those made here; OMSimulator and PyFMI are tried where they can be imported.
 """
 
 import json
@@ -15,14 +15,18 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import others
+import packages
 import pytest
 import tools
 from page import written
+from small_packages import SMALL
 
 from loomfmu import LoomfmuError
 
 TARGET = Path(__file__).parents[2] / "results" / "foreign.md"
 PATIENCE = 300.0  # [s] of one trial
+FOLDERS = re.compile(r"(?<![\w.])/(\S+/)+")  # where something was tried is of no use
+LOGGED = re.compile(r"^error: +(?:\[\w+\] )?(.*)$", re.MULTILINE)  # by OMSimulator
 
 
 def main() -> None:
@@ -35,16 +39,24 @@ def main() -> None:
         checker: {fmi: asked("checker", checker, fmi) for fmi in ("2", "3")} for checker in tools.CHECKERS
     }
     releases = {tool: asked("version", tool).get("version", "") for tool in (*masters, *checkers)}
+    folders = [Path(each) for each in filter(None, os.environ.get("FOREIGN_FMUS", "").split(":"))]
     with TemporaryDirectory() as directory:
-        places = {Path(directory): others.made(Path(directory))}
-        for folder in map(Path, filter(None, os.environ.get("FOREIGN_FMUS", "").split(":"))):
-            places[folder] = sorted(folder.rglob("*.fmu"))
+        place = Path(directory)
+        small = {
+            name: {"expected": SMALL[name].expected, **asked("small", path, SMALL[name].signal)}
+            for name, path in packages.small(folders, place).items()
+        }
+        theirs = {
+            name: asked("package", path) for folder in folders for name, path in packages.found(folder, place)
+        }
+        places = {place / "made": others.made(place / "made")}
+        places |= {folder: sorted(folder.rglob("*.fmu")) for folder in folders}
         found = [
             {"FMU": path.relative_to(root).as_posix(), **others.about(path), **asked("import", path)}
             for root, paths in places.items()
             for path in paths
         ]
-    text = written(masters, checkers, releases, found, tools.STEPS, others.MOST)
+    text = written(masters, checkers, releases, small, theirs, found, tools.STEPS, others.MOST)
     TARGET.write_text(text, encoding="utf-8")
     print(TARGET)
 
@@ -53,7 +65,7 @@ def asked(kind: str, *words: str | Path) -> dict[str, Any]:
     """What a trial says; where it does not end by itself, that."""
     command = [sys.executable, Path(__file__).parent, kind, *words]
     try:
-        done = subprocess.run(command, capture_output=True, errors="replace", timeout=PATIENCE)
+        done = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=PATIENCE)
     except subprocess.TimeoutExpired:
         return {"said": f"does not end within {PATIENCE:g} s"}
     said = {}
@@ -62,8 +74,10 @@ def asked(kind: str, *words: str | Path) -> dict[str, Any]:
             said |= json.loads(line)
     if done.returncode:
         said["said"] = f"ends its process (status {done.returncode})"
-    if kind == "import" and "refused" in said:  # the place where it was tried is of no use
-        said["refused"] = re.sub(rf"^one(\.fmu)?: |{re.escape(str(words[0]))}:? ", "", said["refused"])
+    if "said" in said and (logged := LOGGED.search(done.stdout + done.stderr)):
+        said["said"] = logged[1]
+    for key in {"refused", "said"} & said.keys():
+        said[key] = re.sub(r"^one(\.fmu)?: ", "", FOLDERS.sub("", said[key].replace(f"{words[0]}: ", "")))
     print(*words, said, file=sys.stderr, flush=True)
     return said
 
@@ -82,6 +96,10 @@ def trial(kind: str, *words: str) -> None:
             say({"number": tools.checked(words[0], int(words[1]))})
         elif kind == "version":
             say({"version": tools.release(*words)})
+        elif kind == "small":
+            packages.tried(Path(words[0]), words[1], say)
+        elif kind == "package":
+            packages.compared(Path(words[0]), say)
         else:
             others.compared(Path(words[0]), say)
     except pytest.skip.Exception as error:

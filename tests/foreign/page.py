@@ -26,6 +26,22 @@ CHECKERS = """
 
 The native FMUs in which a checker finds no fault: all components, and the demo as one FMU.
 """
+SMALL = """
+## Small packages in our runs and in OMSimulator
+
+Each package tries one thing. It is made of FMUs of Reference-FMUs: one hands its input over, the other
+multiplies its state by 1 - k / 10 in each of ten steps. Values are those of one signal at the end. "By hand"
+is what SSP asks for; a "wrong" package is to be refused, an "unclear" one does not say what to run. Of the
+{count} that are clear our runs treat {ours} so, and OMSimulator {theirs}; ours refuse {refused} right ones.
+"""
+PACKAGES = """
+## Packages of other makers
+
+The worst difference of OMSimulator from our run in any signal that both record, by the largest value of that
+signal, over the whole run and at the end. OMSimulator hands a value over one step after it was computed, ours
+within the step, which shows wherever a wire carries what changes. A package that states no times runs 1 s in
+steps of 10 ms.
+"""
 OTHERS = """
 ## FMUs of other makers in our scenes
 
@@ -41,6 +57,8 @@ def written(
     masters: dict[str, dict[str, Said]],
     checkers: dict[str, dict[str, Said]],
     releases: dict[str, str],
+    small: dict[str, Said],
+    theirs: dict[str, Said],
     found: list[Said],
     steps: int,
     most: int,
@@ -71,6 +89,27 @@ def written(
                     for name, said in checkers.items()
                 ),
             ),
+            SMALL.format(**counts(small)),
+            table(
+                ["package", "by hand", "ours", "OMSimulator"],
+                (
+                    [name, *(shown(said, each) for each in ("expected", "ours", "theirs"))]
+                    for name, said in small.items()
+                ),
+            ),
+            PACKAGES,
+            table(
+                ["package", "steps", "signals", "worst difference", "at the end"],
+                (
+                    [
+                        name,
+                        *(str(said.get(each, "")) for each in ("steps", "signals")),
+                        cell(said),
+                        exponential(said["at_end"]) if "at_end" in said else "",
+                    ]
+                    for name, said in sorted(theirs.items())
+                ),
+            ),
             OTHERS.format(**others),
             table(
                 ["FMU", "made by", "FMI", "offers", "steps", "signals", "difference, or why not"],
@@ -93,6 +132,37 @@ def kind(said: Said) -> str:
     return "refused" if "refused" in said else "ran" if "said" not in said else "run in ours alone"
 
 
+def counts(small: dict[str, Said]) -> dict[str, int]:
+    """The numbers of packages, of those that each tool treats as it must, and that ours alone refuse."""
+    clear = [said for said in small.values() if said["expected"] != "unclear"]
+    return {
+        "count": len(clear),
+        **{tool: sum(is_right(said, tool) for said in clear) for tool in ("ours", "theirs")},
+        "refused": sum("refused" in said and said["expected"] != "wrong" for said in clear),
+    }
+
+
+def is_right(said: Said, tool: str) -> bool:
+    """Return whether a tool gives the value by hand, or refuses a package that is wrong."""
+    if said["expected"] == "wrong":
+        reason = said.get("refused" if tool == "ours" else "said", "")
+        return tool not in said and reason != "" and not reason.startswith("ends its process")
+    return tool in said and agree(said[tool], said["expected"])
+
+
+def agree(value: float, wanted: float) -> bool:
+    """Return whether two values are the same but for rounding."""
+    return math.isclose(value, wanted, rel_tol=1e-9)  # a file of OMSimulator has so many digits
+
+
+def shown(said: Said, tool: str) -> str:
+    """A value of a small package, or why there is none."""
+    if tool in said:
+        value = said[tool]
+        return value if isinstance(value, str) else f"{value:.7g}"
+    return str(said.get("refused" if tool == "ours" else "said", "-"))
+
+
 def absent(said: dict[str, Said]) -> set[str]:
     """Why a tool was not tried."""
     return {each["absent"] for each in said.values() if "absent" in each}
@@ -104,7 +174,11 @@ def cell(said: Said) -> str:
         return str(reason)
     if "number" in said:
         return str(said["number"])
-    worst = said.get("difference", math.nan)
+    return exponential(said.get("difference", math.nan))
+
+
+def exponential(worst: float) -> str:
+    """A difference."""
     return "-" if math.isnan(worst) else "0" if worst == 0.0 else f"{worst:.0e}"
 
 

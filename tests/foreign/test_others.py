@@ -52,6 +52,14 @@ def test_the_page_says_what_ran_and_what_did_not() -> None:
         },
         {"checker": {"2": {"number": 17}}},
         {"one": "1.0", "other": "", "checker": "2.0"},
+        {
+            "twice": {"expected": 2.0, "ours": 2.0 + 1e-12, "theirs": 1.0},
+            "no end": {"expected": "wrong", "refused": "no|end", "theirs": 4.0},
+            "a map": {"expected": 3.0, "refused": "a map", "said": "ends its process (status -6)"},
+            "neither": {"expected": "wrong", "ours": 1.0, "said": "ends its process (status -6)"},
+            "no time": {"expected": "unclear", "refused": "no time", "theirs": 1.0},
+        },
+        {"theirs.ssp": {"steps": 7, "signals": 3, "difference": 0.5, "at_end": 0.0}},
         [{"FMU": "b.fmu", "steps": 5, "difference": 1e-3}, {"FMU": "a.fmu", "refused": "it is a|b"}],
         steps=10,
         most=20,
@@ -60,4 +68,8 @@ def test_the_page_says_what_ran_and_what_did_not() -> None:
     assert "| one | 1.0 | 0 | 2e-15 |" in lines and "| other | not run | - |" in lines
     assert "other: gone." in lines and "| checker | 2.0 | 17 |" in lines
     assert "| a.fmu |  |  |  |  |  | it is a\\|b |" in lines and "| b.fmu |  |  |  | 5 |  | 1e-03 |" in lines
+    assert "| twice | 2 | 2 | 1 |" in lines and "| no end | wrong | no\\|end | 4 |" in lines
+    assert "| a map | 3 | a map | ends its process (status -6) |" in lines
+    assert "4 that are clear our runs treat 2 so, and OMSimulator 0; ours refuse 1 right ones." in lines
+    assert "| theirs.ssp | 7 | 3 | 5e-01 | 0 |" in lines
     assert "Of 2 FMUs 1 run in both,\n1 are refused by us.\n" in text

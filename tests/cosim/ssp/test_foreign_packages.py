@@ -239,6 +239,10 @@ def test_a_value_for_a_component_that_does_not_exist_is_named(
         (parameter("load", "Real", 'value="0.7" unit="daN.m"'), 7.0),
         (parameter("drive.free", "Real", 'value="5"'), 5.0),  # a connector of a system in the system
         (parameter("drive.free", "Real", 'value="5"') + parameter("load", "Real", 'value="7"'), 7.0),
+        (
+            parameter("load", "Real", 'value="7"') + parameter("drive.motor.load.tau", "Real", 'value="3"'),
+            7.0,
+        ),
     ],
 )
 def test_a_value_of_a_system_connector_reaches_what_is_wired_to_it(

@@ -141,16 +141,20 @@ class _Reader:
         nets: Nets,
         passing: Mapping[Node, Stated | None],
     ) -> dict[str, list[Given]]:
-        """The values of each instance in the order they are set: those of outer systems last."""
+        """The values of each instance in the order they are set: those of outer systems later.
+
+        Those that come along connections are last: an end of one has no value of its own.
+        """
         given_in = partial(bound, read=self.package.root, units=self.units)
         values = {name: list(given_in(each.element)) for name, each in found.items()}
+        wired: dict[str, list[Given]] = {name: [] for name in found}
         dotted = {".".join(each.path): name for name, each in found.items()}
         for path, element in reversed(list(systems(system))):  # the outermost last: it prevails
             for given in given_in(element):
-                taken = _in_component(path, given, dotted) or self._by_wires(path, given, passing, nets)
-                for name, value in taken:
-                    values[name].append(value)
-        return values
+                direct = _in_component(path, given, dotted)
+                for name, value in direct or self._by_wires(path, given, passing, nets):
+                    (values if direct else wired)[name].append(value)
+        return {name: [*each, *wired[name]] for name, each in values.items()}
 
     def _by_wires(
         self, path: Sequence[str], given: Given, passing: Mapping[Node, Stated | None], nets: Nets
