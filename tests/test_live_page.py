@@ -398,9 +398,13 @@ def test_an_address_carries_values_which_are_copied_as_command_and_scene(written
     assert "#" not in page.url
     turned(page, 700.0)
     assert page.url.endswith("#shaft.speed=700")
-    page.goto(f"{written.as_uri()}#shaft.speed=690&dobby.law=harmonic_ends&belt.guide_clearance=99&x=1")
-    page.reload()
+    page.goto("about:blank")
+    page.goto(f"{written.as_uri()}#shaft.speed=690rpm&dobby.law=harmonic_ends&belt.guide_clearance=99&x=1")
     running(page)
+    assert page.locator("#live-ignored").inner_text() == (
+        "belt.guide_clearance=99 in the address is ignored. Write a number from 0.24 to 0.36 mm."
+        " x=1 in the address is ignored. This page varies shaft.speed, belt.guide_clearance, dobby.law."
+    )
     until(page, lambda: page.inner_text(".outcome").endswith("fail"))
     shown = page.evaluate(
         "[...document.querySelectorAll('.knob :is(input[type=number], select)')].map(e => e.value)"
@@ -416,6 +420,12 @@ def test_an_address_carries_values_which_are_copied_as_command_and_scene(written
     assert command[-4:] == ["--set", "shaft.speed=690 rev/min", "--set", "dobby.law=harmonic_ends"]
     scene = tomllib.loads(copied["scene"].removeprefix("copied:\n"))
     assert scene == {"shaft": {"speed": "690 rev/min"}, "dobby": {"law": "harmonic_ends"}}
+    page.evaluate("location.hash = '#shaft.speed=11.5 1/s&dobby.law=linear'")  # in the page as it is open
+    said = page.locator("#live-ignored")
+    until(page, lambda: "dobby.law=linear in the address is ignored. Write " in said.inner_text())
+    assert "shaft.speed=11.5 1/s in the address is ignored." in said.inner_text()
+    turned(page, 700.0)
+    assert said.is_hidden() and page.url.endswith("#shaft.speed=700&dobby.law=harmonic_ends")
 
 
 def test_sliders_show_where_the_claims_hold(page: Any) -> None:

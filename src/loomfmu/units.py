@@ -156,10 +156,19 @@ def unit(name: str, like: str = "") -> Unit:
     """
     known = UNITS.get(canonical(name))
     if known is None:
-        names = filter(None, [*UNITS, *ALIASES])
-        fitting = [n for n in names if not like or unit(n).dimension == unit(like).dimension]
+        fitting = alike(like) if like else [*UNITS, *filter(None, ALIASES)]
         raise UnitError(f"unknown unit {shown(name)}{suggestion(name, fitting)}")
     return known
+
+
+def alike(like: str) -> dict[str, float]:
+    """Return the factors to SI of all units of the dimension of one, by their names.
+
+    >>> alike("K/s"), "rpm" in alike("rad/s")
+    ({'K/s': 1.0}, True)
+    """
+    named = {name: unit(name) for name in (*UNITS, *filter(None, ALIASES))}
+    return {name: each.factor for name, each in named.items() if each.dimension == unit(like).dimension}
 
 
 def parse(quantity: str | float, target: str) -> float:

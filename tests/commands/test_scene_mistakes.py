@@ -158,6 +158,10 @@ IN_HEAD = [
     ('[[claims]]\nkind = "above"\nbound = 1\n', "claim 'above' needs 'signal'"),
 ]
 WHOLE = [
+    (
+        '[claims]\nkind = "above"\n\n[[claims]]\nkind = "below"\n',
+        "claims are written as [[claims]] tables, with two brackets; line 1 has [claims]",
+    ),
     ("a = = 5", "not valid TOML: Invalid value (at line 1, column 5)"),
     (HEAD.replace("90", "0"), "steps_per_revolution = 0 is outside [1, 1e+09]"),
     (HEAD.replace("90", "90.5"), "steps_per_revolution = 90.5 is not a whole number"),
@@ -181,7 +185,7 @@ WHOLE = [
         "heald_1.pattern has 130 picks; the dobby holds 128",
     ),
     ("wires = 5\n" + HEAD, 'wires must be a table of "instance.input" = "instance.output"'),
-    ("claims = 5\n" + HEAD, "claims are written as [[claims]] tables"),
+    ("claims = 5\n" + HEAD, "claims are written as [[claims]] tables, with two brackets"),
     (HEAD + f"[shaft]\nspeed = {HUGE}\n", f"shaft.speed: {HUGE[:60]}... is too large"),
     (
         HEAD.replace("revolutions = 1", f"revolutions = {HUGE}") + LOOM,

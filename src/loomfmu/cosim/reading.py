@@ -6,7 +6,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from ..errors import LoomfmuError, listed, path_of, shown, suggestion
+from ..errors import LoomfmuError, listed, path_of, shown, suggestion, within
 from .claims.bounded import Bounded, check_speed
 from .claims.claim import Claim
 from .claims.claims import angles_in, doubts, place_of
@@ -152,7 +152,8 @@ def check_bounds(requested: Requested, scene: Scene, claims: Iterable[Claim]) ->
     for claim in claims:
         claim.check_parameters(partial(parameter_of, scene))
         if isinstance(claim, Bounded) and isinstance(claim.bound, str):
-            _check_parameter(scene, claim.bound, claim.signal, claim.unit_in(requested))
+            with within(claim.place):
+                _check_parameter(scene, claim.bound, claim.signal, claim.unit_in(requested))
 
 
 def _unrecorded(scene: Scene) -> Iterator[str]:
@@ -170,13 +171,11 @@ def _check_parameter(scene: Scene, name: str, signal: str, wanted: str) -> None:
     ports = scene.instances[instance].fmu.ports if instance in scene.instances else {}
     if variable not in ports or ports[variable].causality != "parameter":
         known = [f"{instance}.{port.name}" for port in ports.values() if port.causality == "parameter"]
-        raise LoomfmuError(f"claim: bound = {name!r} is not a parameter{suggestion(name, known)}")
+        raise LoomfmuError(f"bound = {name!r} is not a parameter{suggestion(name, known)}")
     value = scene.instances[instance].effect(variable)
     if value is None:
-        raise LoomfmuError(
-            f"claim: bound = {name!r} has no effect in this scene, as {instance} does not use it"
-        )
+        raise LoomfmuError(f"bound = {name!r} has no effect in this scene, as {instance} does not use it")
     given = ports[variable].unit
     if given != wanted:
-        raise LoomfmuError(f"claim: bound {name} is in {given}, but {signal} is in {wanted}")
+        raise LoomfmuError(f"bound {name} is in {given}, but {signal} is in {wanted}")
     check_speed(name, float(value), wanted)

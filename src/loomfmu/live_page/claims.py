@@ -38,19 +38,20 @@ def claims(
     dependence = Dependence(requested, requested.claims)
     unshown = [dependence.unshown(each) for each in ends]
     composed = Composed(requested, requested.claims)
+    rated = composed.unrated
+    left = [_not_live(each, rated & {*each.signals(requested)}) for each in requested.claims]
     sampled = [
-        _on_samples(claim, method, verdict, trace) if number in composed.claims else verdict
-        for number, (claim, method, verdict) in enumerate(
-            zip(requested.claims, dependence.methods, verdicts, strict=True)
+        _on_samples(claim, method, verdict, trace) if number in composed.claims and not why else verdict
+        for number, (claim, method, verdict, why) in enumerate(
+            zip(requested.claims, dependence.methods, verdicts, left, strict=True)
         )
     ]
-    asked = zip(requested.claims, dependence.methods, sampled, strict=True)
-    rated = composed.unrated
+    asked = zip(requested.claims, dependence.methods, sampled, left, strict=True)
     rows = [
-        _claim(claim, method, verdict, trace, table, _not_live(claim, rated & {*claim.signals(requested)}))
+        _claim(claim, method, verdict, trace, table, why)
         | {"unshown": next((each[number] for each in unshown if number in each), "")}
         | {"counts": counts(trace, verdict), "proven": proven[0].get(number, "")}
-        for number, (claim, method, verdict) in enumerate(asked)
+        for number, (claim, method, verdict, why) in enumerate(asked)
     ]
     signals = [
         {"name": name, "about": trace.description(name), "beside": beside(table, name)} for name in table

@@ -1,9 +1,9 @@
 """The sliders of a page: parameters of a scene, each with its range or its choices."""
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import combinations
 
 from .. import units
@@ -26,7 +26,8 @@ class Knob:
     """A parameter that a page varies: all of `targets` at once, values in SI, shown as multiples of `factor`.
 
     `choices` are (value, name); without them it lies between `low` and `high`, in whole numbers if `whole`.
-    `doubts` warn of ends that were probably meant in another unit.
+    `units` are the factors of those that an address may give it in. `doubts` warn of ends that were
+    probably meant in another unit.
     """
 
     key: str
@@ -39,6 +40,7 @@ class Knob:
     factor: float = 1.0
     whole: bool = False
     choices: tuple[tuple[int, str], ...] = ()
+    units: Mapping[str, float] = field(default_factory=dict)
     doubts: tuple[str, ...] = ()
 
 
@@ -105,6 +107,7 @@ def _knob(scene: Scene, known: set[str], key: str, wanted: str) -> Knob:
         shown,
         units.unit(port.display).factor,
         port.kind == "Integer",
+        units=units.alike(port.display),
         doubts=doubts,
     )
 

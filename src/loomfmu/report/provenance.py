@@ -22,7 +22,7 @@ PLAIN = {
 
 
 def section(subject: Subject) -> Section:
-    """Machine, values that differ from the scene, warnings, versions and hashes of the trace that is shown."""
+    """Machine, values that differ from the scene, warnings, versions and hashes."""
     attributes, overrides = subject.trace.attributes, subject.trace.overrides
     facts = [
         (label, _shown(key, attributes[key]))

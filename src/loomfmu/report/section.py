@@ -127,9 +127,7 @@ class Subject:
     @cached_property
     def _placed(self) -> list[list[Verdict]]:
         """The verdicts of each trace that have a place."""
-        return [
-            [each for each in trace.verdicts if self.position(each) is not None] for trace in self.traces
-        ]
+        return [[each for each in trace.verdicts if self.position(each) is not None] for trace in self.traces]
 
     @cached_property
     def start(self) -> float:

@@ -9,7 +9,7 @@ bound, and by no more than it may be off there; the note says so.
 from typing import ClassVar
 
 from ... import units
-from ...errors import LoomfmuError
+from ...errors import LoomfmuError, shown, within
 from ...traces import Signals
 from .arguments import Bound, Edges, Flag, Name, Window, argument
 from .claim import AT_LEAST, AT_MOST, Claim
@@ -33,6 +33,11 @@ class Bounded(Claim, kind=False):
 
     text: ClassVar[str]
 
+    @property
+    def place(self) -> str:
+        """Its name in messages."""
+        return f"claim {shown(self.name)}" if self.name else f"claim on {self.signal}"
+
     def signals(self, scene: Wired) -> list[str]:
         return [self.signal]
 
@@ -51,7 +56,8 @@ class Bounded(Claim, kind=False):
             window = [1.0, self.window.start, self.window.width]
         a_speed = isinstance(self.bound, str) and trace.unit(self.signal) == "rad/s"
         if isinstance(self.bound, str):
-            check_speed(self.bound, trace.parameter(self.bound), trace.unit(self.signal))
+            with within(self.place):
+                check_speed(self.bound, trace.parameter(self.bound), trace.unit(self.signal))
         form = Form(text, self.signal, (trace.unit(self.signal), trace.display(self.signal)), self.sense)
         numbers = [self.bound, float(self.at_samples), *window, float(a_speed)]
         return Question("bounded", [form], [self.signal], numbers)
@@ -82,6 +88,6 @@ def check_speed(parameter: str, value: float, unit: str) -> None:
     """Refuse a negative speed as a bound: signals that are limits of speed are never negative."""
     if unit == "rad/s" and value < 0.0:
         raise LoomfmuError(
-            f"claim: bound {parameter} = {units.show(value, 'rev/min')} is negative, but a limit of speed"
+            f"bound {parameter} = {units.show(value, 'rev/min')} is negative, but a limit of speed"
             f' is positive; write the speed itself, such as bound = "{units.show(-value, "rev/min")}"'
         )

@@ -2,6 +2,7 @@
 
 import fnmatch
 import math
+import re
 import tomllib
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
@@ -50,6 +51,9 @@ def toml(text: str, kind: str = "") -> dict[str, Any]:
     except RecursionError:
         raise LoomfmuError(TOO_DEEP) from None
     except tomllib.TOMLDecodeError as error:
+        for single in re.finditer(r"(?m)^[ \t]*\[(claims|cases)\]", text):
+            line = text.count("\n", 0, single.start(1)) + 1
+            raise LoomfmuError(f"{several(single[1])}; line {line} has [{single[1]}]") from None
         raise LoomfmuError(f"not valid TOML: {error}") from None
     except ValueError:  # what tomllib passes on from int() and from dates
         raise LoomfmuError("not valid TOML: a number has too many digits, or a date does not exist") from None
@@ -58,6 +62,11 @@ def toml(text: str, kind: str = "") -> dict[str, Any]:
     if kind:
         _check_kind(tables, kind)
     return tables
+
+
+def several(name: str) -> str:
+    """Return the message on a table that is written as if there could be one alone."""
+    return f"{name} are written as [[{name}]] tables, with two brackets"
 
 
 def texts_in(tables: Any) -> Iterator[tuple[str, str]]:
@@ -198,7 +207,7 @@ def _recorded(patterns: Any, outputs: Collection[str]) -> list[str]:
 def _claims(tables: Any) -> list[dict[str, Any]]:
     """The tables of the claims."""
     if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
-        raise LoomfmuError("claims are written as [[claims]] tables")
+        raise LoomfmuError(several("claims"))
     return tables
 
 

@@ -6,6 +6,7 @@
 loomfmu.live = (() => {
   const plan = loomfmu.data("live"), listeners = new Map();
   const form = document.getElementById("live-knobs"), problem = document.getElementById("live-problem");
+  const ignored = document.getElementById("live-ignored");
   const pace = document.getElementById("live-pace");
   const values = plan.knobs.map(knob => knob.start);
   const SLICE = 12, slices = new MessageChannel(); // ms between which the page draws; timers would wait 4 ms more
@@ -78,15 +79,32 @@ loomfmu.live = (() => {
     if (words.length || location.hash.includes("=")) history.replaceState(null, "", `#${words.join("&")}`);
   }
 
-  /* Take the values of the address; what is not within its range is left as it is. */
+  /* The value that a text of the address gives a knob; a number may have a unit. */
+  function valueOf(knob, text) {
+    const choice = knob.choices.find(([, name]) => name === text);
+    if (choice || knob.choices.length) return choice && choice[0];
+    const [, number, unit] = /^\s*([-+]?[\d.]+(?:e[-+]?\d+)?)\s*(\S*)\s*$/i.exec(text) || [], room = 1e-9 * (knob.high - knob.low);
+    const value = Number(number) * (unit ? knob.units[unit] : knob.factor), whole = !knob.whole || Number.isInteger(value);
+    return whole && value >= knob.low - room && value <= knob.high + room ? value : undefined;
+  }
+
+  const wantedOf = knob => knob.choices.length ? `Write ${knob.choices.map(([, name]) => name).join(" or ")}`
+    : `Write a ${knob.whole ? "whole number" : "number"} from ${short(knob.low / knob.factor)} to ${short(knob.high / knob.factor)}${unitOf(knob)}`;
+
+  /* Take the values of the address; say which are ignored. */
   function arrive() {
+    if (!location.hash.includes("=")) return; // a section of the page
+    const wrong = [];
     for (const [key, text] of new URLSearchParams(location.hash.slice(1))) {
-      const number = plan.knobs.findIndex(knob => knob.key === key), knob = plan.knobs[number];
-      if (!knob) continue;
-      const choice = knob.choices.find(([, name]) => name === text), value = choice ? choice[0] : Number(text) * knob.factor;
-      const room = 1e-9 * (knob.high - knob.low), whole = !knob.whole || Number.isInteger(value);
-      if (choice || (!knob.choices.length && text && whole && value >= knob.low - room && value <= knob.high + room)) values[number] = value;
+      const number = plan.knobs.findIndex(knob => knob.key === key), knob = plan.knobs[number], value = knob && valueOf(knob, text);
+      if (value !== undefined) values[number] = value;
+      else wrong.push(`${key}=${text} in the address is ignored. `
+        + (knob ? `${wantedOf(knob)}.` : `This page varies ${plan.knobs.map(each => each.key).join(", ")}.`));
     }
+    for (const show of shows) show();
+    if (differing().length || current) soon();
+    ignored.textContent = wrong.join(" ");
+    ignored.hidden = !wrong.length;
   }
 
   const quoted = text => /^[\w.=/+-]+$/.test(text) ? text : `"${text}"`;
@@ -119,6 +137,7 @@ loomfmu.live = (() => {
   }
 
   function soon() {
+    ignored.hidden = true;
     address();
     mark();
     document.getElementById("live-copied").textContent = "";
@@ -165,7 +184,7 @@ loomfmu.live = (() => {
     field.addEventListener("input", () => {
       const value = Number(field.value), unit = knob.unit && ` ${knob.unit}`;
       const taken = field.value && field.checkValidity() && (!knob.whole || Number.isInteger(value));
-      refused.textContent = taken ? "" : `Write a ${knob.whole ? "whole number" : "number"} from ${field.min} to ${field.max}${unit};`
+      refused.textContent = taken ? "" : `${wantedOf(knob)};`
         + ` the page shows ${short(values[number] / knob.factor)}${unit}.`;
       if (!taken) return;
       values[number] = value * knob.factor;
@@ -207,8 +226,7 @@ loomfmu.live = (() => {
     for (const input of form.elements) input.disabled = false;
     run(); // with the scene's own values: claims and plots compare with them
     arrive();
-    for (const show of shows) show();
-    if (differing().length) soon();
+    addEventListener("hashchange", arrive);
   });
   const changed = () => plan.knobs.flatMap((knob, number) => values[number] === knob.start ? [] : knob.targets);
   /* Whether all values are those of the scene, or within ranges by their keys. */

@@ -75,11 +75,17 @@ loomfmu.judge = ({ fields, signals, coarseness, proven }, length, wasm) => {
     return { ...far, form, holds: far.decided ? far.holds > 0 : null, note };
   }
 
-  const left = note => ({ holds: null, left: true, note: `${note}; ${NOT_HERE}` });
+  const left = ({ native: { holds, decided } }, why) => {
+    const word = decided ? (holds ? "holds" : "fails") : "is undecided";
+    return { holds: null, left: true, note: `${why}; ${NOT_HERE}: it ${word} with the scene's own values` };
+  };
 
   /* A function from a claim to its verdict; `own` says that the values are those of the scene. */
   return (run, own) => {
     take(run);
-    return claim => claim.not_live ? left(claim.not_live) : claim.unlike ? left("the page would judge it unlike the native run") : judge(run, claim, own);
+    return claim => {
+      const why = claim.not_live || (claim.unlike && "the page would judge it unlike the native run");
+      return why ? left(claim, why) : judge(run, claim, own);
+    };
   };
 };

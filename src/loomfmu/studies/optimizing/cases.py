@@ -4,6 +4,7 @@ from collections.abc import Collection
 from itertools import product
 from typing import Any
 
+from ...cosim.scenes.settings import several
 from ...errors import LoomfmuError, shown, within
 from ...sweeps.axes import flattened
 from ...sweeps.header import Header
@@ -21,7 +22,7 @@ def cases_of(head: Header, tables: dict[str, Any], taken: Collection[str]) -> tu
     """
     given = tables.get("cases", [])
     if not isinstance(given, list) or not all(isinstance(each, dict) for each in given):
-        raise LoomfmuError("cases are written as [[cases]] tables")
+        raise LoomfmuError(several("cases"))
     stated = [_case(head, table, number) for number, table in enumerate(given, 1)]
     corners = corners_of(head.scene) if _wants_corners(tables) else []
     found = [one.and_(other) for one, other in product(stated or [Case("")], corners or [Case("")])]
