@@ -242,8 +242,10 @@ def test_a_page_says_which_claims_it_does_not_judge(opened: Open, tmp_path: Path
     until(page, lambda: page.evaluate("Boolean(loomfmu.live.pace)"))
     first, second, third = page.evaluate("loomfmu.live.verdicts")
     assert third["left"] and third["note"].startswith("the page does not compute the rate of heald_1.inertia")
-    said_there = "a page judges signals, not expressions; loomfmu run judges it: it is undecided with the scene's own values"
-    assert first["left"] and first["note"] == said_there
+    assert first["left"] and first["note"] == (
+        "a page judges signals, not expressions;"
+        " loomfmu run judges it: it is undecided with the scene's own values"
+    )
     assert second["holds"] and not second.get("left")
     reasons = [each["note"].partition(";")[0] for each in (first, third)]
     assert said[:2] == [f"claim 'below' is not judged in the page: {why}" for why in reasons]
