@@ -220,6 +220,29 @@ def test_a_beat_up_shorter_than_a_step_is_not_missed(start: float) -> None:
     assert verdict.word == "FAILS"
 
 
+def test_no_steps_are_too_long_for_what_follows_from_the_time() -> None:
+    """Eight ripples of the shaft in a revolution, on three steps each."""
+    scene = read(
+        claim("below", signal="reed.shaft_torque", bound=1e4),
+        claim("dwell", heald="heald_1", tolerance=0.05, at_least="10 deg"),
+    )
+    values = {"shaft.ripple_order": 8, "steps_per_revolution": 24}
+    few, unshown = evaluate(scene, set=values).claims
+    fine, shown = evaluate(scene, set={**values, "steps_per_revolution": 5760}).claims
+    assert few.holds and abs(few.worst - fine.worst) <= few.error + fine.error <= 1e-7
+    assert shown.decided and not unshown.decided and "the shaft ripples 8 times" in unshown.note
+
+
+def test_a_scene_that_runs_by_seconds_is_divided_by_what_turns_in_it() -> None:
+    """With a step for a second, a servo of 20 deg of a shaft that turns 50 times in it is passed by."""
+    reed = '[reed]\nservo = true\nrun_angle = "20 deg"\nbeat_up_angle = "190 deg"\n'
+    judged = claim("below", signal="reed.velocity", bound=1e4)
+    by_seconds = 'duration = "0.1 s"\nstep = "2.5 ms"\n[shaft]\nspeed = "3000 rpm"\n'
+    by_turns = "revolutions = 5\nsteps_per_revolution = 1440\n[shaft]\nspeed = '3000 rpm'\n"
+    (few,), (fine,) = (evaluate(parse(length + reed + judged)).claims for length in (by_seconds, by_turns))
+    assert few.decided and abs(few.worst - fine.worst) <= few.error + fine.error
+
+
 def test_a_window_may_begin_where_the_run_does() -> None:
     scene = read(claim("below", signal="weft.travel", bound="5 m", window=["0 deg", "30 deg"]))
     (verdict,) = evaluate(scene, set={"revolutions": 0.5}).claims

@@ -1,7 +1,7 @@
 """Verdicts on a random scene, beside the truth that far finer steps give."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from random import Random
 from typing import Any, NamedTuple
@@ -10,11 +10,13 @@ import numpy as np
 from verdicts.drawing import Claim, Drawn
 
 from loomfmu import LoomfmuError, Verdict, judge, prepare
+from loomfmu.cosim.master.grid import period
 from loomfmu.cosim.scenes.scene import parse
 from loomfmu.traces import Signals
 
 BOUNDS = 6  # to either side of the truth, at random distances
 NEAREST, FARTHEST = 1e-9, 0.3  # of the truth
+CLEARANCE = 3e-4  # m: any that a belt may have
 ROUNDING = 1e-12  # of value, bound and signal: what sums may leave
 CONFIRMED = 4  # times the finest steps, where a verdict seems to be wrong
 ANY = 0.25  # a bound that all claims take
@@ -187,9 +189,20 @@ def confirmed(found: Sequence[Found]) -> list[Found]:
     if not doubtful:
         return list(found)
     scene, finest = doubtful[0].scene, CONFIRMED * doubtful[0].scene.fine[-1]
-    traces = fine_runs(scene, [finest // 2 + 2, finest])  # with points of their own
+    seen = _with_samples(scene, [each.verdict.time for each in doubtful])
+    traces = fine_runs(seen, [finest // 2 + 2, finest])  # with points of their own
     better = {id(each.truth): _truth(each.stated, traces) for each in doubtful}  # one for each bound
     return [_with_better(each, better.get(id(each.truth))) for each in found]
+
+
+def _with_samples(scene: Drawn, times: Iterable[float]) -> Drawn:
+    """The scene with samples at some times, too: points of a table of an instance that nothing needs."""
+    revolution = period(parse(scene.text))
+    turns = sorted({time / revolution for time in times if time > 0.0})
+    table = [[0.0, CLEARANCE], *([turn, CLEARANCE] for turn in turns)]
+    inputs = f'[inputs]\n"witness.block_clearance" = {_toml(table)}\n'
+    text = scene.text.rstrip() + '\n[witness]\ncomponent = "BeltWrap"\n'
+    return scene._replace(text=text.replace("[inputs]\n", inputs) if "[inputs]\n" in text else text + inputs)
 
 
 def _with_better(found: Found, finer: Truth | None) -> Found:

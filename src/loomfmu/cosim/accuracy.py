@@ -55,7 +55,8 @@ def fewest_steps(
             coarsest = altered(scene, steps_per_period=round(SHARES[-1] * steps))
             if crowded(coarsest):  # those that were tried before are hardly coarser
                 coarser = estimates.coarser(tried, uniform(tried), by_steps)
-            estimated = estimates.of(tried, trace, verdicts, coarser)
+            exact = {*range(len(verdicts))}.difference(by_steps)
+            estimated = estimates.of(tried, trace, verdicts, coarser, exact)
             errors = [_share(estimated[each], estimates.claims[each].noise) for each in estimates.own_claims]
             number, error = max(enumerate(errors), key=lambda each: each[1])
             if error <= wanted:

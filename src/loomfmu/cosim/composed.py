@@ -5,6 +5,7 @@ at any time, and these a cubic from one time to the next, with what it may be of
 value may lie, the step is divided until that is rounding. What is left is the error of the verdict.
 """
 
+import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from functools import cached_property
 from typing import Any
@@ -16,12 +17,13 @@ from ..declaring.upstream import sources_of, upstream
 from ..declaring.variables import AT_STEP_END, MOTION, NOTHING
 from ..errors import LoomfmuError
 from ..traces import Signals, Verdict
+from .claims.arguments import TURN
 from .claims.claim import Claim
 from .claims.conditions import remembers
 from .composition import SHARE, Composition
 from .estimates import MOST_VALUES, undecided
 from .master.grid import period
-from .planning.requested import Movements, Requested, output_port
+from .planning.requested import SHAFT_ANGLE, Movements, Requested, output_port
 from .scenes.graph import step_order
 from .scenes.scene import Scene
 from .tangents import Tangents
@@ -36,7 +38,7 @@ class Composed:
     """The claims of a scene that are judged so; `judged` judges them on a run."""
 
     def __init__(self, requested: Requested, claims: Sequence[Claim]):
-        self._scene, self._requested = requested.scene, requested
+        self._scene, self._requested, self._movements = requested.scene, requested, Movements(requested)
         self.claims = {number: each for number, each in enumerate(claims) if self._follows(each)}
         wanted = requested.needed(self.claims.values(), ()) if self.claims else ()
         self._latches = {name: found for name in wanted if (found := self._held(name))}
@@ -172,9 +174,20 @@ class Composed:
 
     def _steps(self, scene: Scene, run: Signals) -> int:
         """Return how many equal steps show how all mechanisms move."""
-        movements, end = Movements(self._requested), float(run.time[-1])
+        movements, end = self._movements, float(run.time[-1])
         longest = [movements.longest_step(scene, name)[0] for name in self._needed]
-        return int(self.steps(end, period(scene), longest))
+        speeds = (movements.mean_speed(scene, name) for name in self._needed if not self._by_main_shaft(name))
+        own = min((TURN / abs(speed) for speed in speeds if speed), default=math.inf)
+        return int(self.steps(end, min(period(scene), own), longest))
+
+    @property
+    def by_main_shaft(self) -> bool:
+        """Return whether all that these claims depend on moves with the main shaft."""
+        return all(self._by_main_shaft(name) for name in self._needed)
+
+    def _by_main_shaft(self, name: str) -> bool:
+        moved = self._movements.angles(name) == (SHAFT_ANGLE,) or f"{name}.angle" == SHAFT_ANGLE
+        return moved and self._scene.step is None
 
     def steps(self, end: Any, of_period: Any, longest: Sequence[float]) -> Any:
         """Return the number of equal steps to an end, or to several, that show how mechanisms move."""

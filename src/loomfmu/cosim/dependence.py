@@ -221,8 +221,13 @@ class Dependence:
         """The signals of the angles by which instances move for which steps may be too long."""
         return {name: {*self._movements.angles(name)} for name in self._passing}
 
-    def unshown(self, scene: Scene, runs: Sequence[Judged] = ()) -> dict[int, str]:
-        """The claims, counted from 0, of which coarser runs say nothing, and why; `runs` show speeds."""
+    def unshown(
+        self, scene: Scene, runs: Sequence[Judged] = (), exact: Collection[int] = ()
+    ) -> dict[int, str]:
+        """The claims, counted from 0, of which coarser runs say nothing, and why; `runs` show speeds.
+
+        Steps of the run do not matter for those that are `exact`.
+        """
         found = dict[int, str]()
         passed = passed_by(scene) | contradicted(scene)
         speeds = {
@@ -236,7 +241,7 @@ class Dependence:
             longest, why = min((shown[name] for name in names if name in shown), default=(math.inf, ""))
             if not longest:
                 found[number] = f"{why}, so that no steps are known to show its outputs"
-            elif scene.step_size > TOO_LONG * longest * (1.0 + SAME):
+            elif number not in exact and scene.step_size > TOO_LONG * longest * (1.0 + SAME):
                 found[number] = f"the steps are too long: {why}; {_enough(scene, TOO_LONG * longest)}"
             elif row := next((passed[name] for name in names if name in passed), ""):
                 found[number] = row

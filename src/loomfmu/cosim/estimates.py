@@ -155,12 +155,20 @@ class Estimates:
         )
 
     def of(
-        self, scene: Scene, trace: Signals, verdicts: Sequence[Verdict], coarser: Coarser
+        self,
+        scene: Scene,
+        trace: Signals,
+        verdicts: Sequence[Verdict],
+        coarser: Coarser,
+        exact: Collection[int],
     ) -> tuple[Verdict, ...]:
-        """The verdicts, with the errors of those that were judged on coarser steps, too."""
+        """The verdicts, with the errors of those that were judged on coarser steps, too.
+
+        Those that are `exact` are by the mechanisms' own functions: no steps are too long for them.
+        """
         found = list(verdicts)
         runs = [self.judged(trace, ()), *coarser.runs]
-        unshown = self._dependence.unshown(scene, runs)
+        unshown = self._dependence.unshown(scene, runs, exact)
         for number, why in self._dependence.differing(runs).items():
             if abs(found[number].distance) <= BLOWN * _scale(scene, found[number]):
                 unshown.setdefault(number, why)

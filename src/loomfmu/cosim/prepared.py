@@ -139,7 +139,8 @@ class Pattern:
         return [number for number in range(len(self._all)) if number not in self._composed.claims]
 
     def _estimated(self, scene: Scene, coarser: Coarser, trace: Signals) -> tuple[Verdict, ...]:
-        return self._estimates.of(scene, trace, self._verdicts(scene, trace), coarser)[: len(self.claims)]
+        verdicts, exact = self._verdicts(scene, trace), self._composed.claims
+        return self._estimates.of(scene, trace, verdicts, coarser, exact)[: len(self.claims)]
 
     def evaluate(self, scene: Scene, errors: Errors = "all") -> Evaluation:
         """Run what the claims of the scene need, and judge them."""
@@ -152,10 +153,10 @@ class Pattern:
         wanted = {"all": {*range(len(verdicts))}, "near": near, "none": set[int]()}[errors]
         # only rows of which few are near a bound do with less, and not on the steps that an accuracy chose
         every = scene.accuracy is not None or errors != "near"
-        exact = {n for n, each in enumerate(verdicts) if every or n in near or not each.decided}
+        exact = {n for n in self._composed.claims if every or n in near or not verdicts[n].decided}
         verdicts = self._exact(scene, run, verdicts, exact)
         coarser = known or self._estimates.coarser(scene, grid, wanted.intersection(self._by_steps))
-        verdicts = self._estimates.of(scene, run, verdicts, coarser)
+        verdicts = self._estimates.of(scene, run, verdicts, coarser, exact)
         return Evaluation(
             scene,
             verdicts[: len(self.claims)],

@@ -201,7 +201,7 @@ class RowsInC:
     def _count(self, scene: Scene, stepping: Steps, takers: Mapping[Variable, int]) -> bool:
         """Count the steps of composed claims in each row; false where that takes more than arithmetic."""
         needed = sorted(self._composed.needed)
-        if any(reads(scene, name, takers) for name in needed):
+        if not self._composed.by_main_shaft or any(reads(scene, name, takers) for name in needed):
             return False
         movements, grid = Movements(self._requested), stepping.grid
         size = scene.step_size if stepping.size is None else stepping.size

@@ -263,7 +263,7 @@ class Movements:
             component.longest_turn,
             f"{name} {limit if component.longest_turn else 'declares no longest_turn'}",
         )
-        speeds = [each for each in (speed, self._mean_speed(scene, name)) if each is not None]
+        speeds = [each for each in (speed, self.mean_speed(scene, name)) if each is not None]
         fastest = max(speeds, default=None)
         turns = [by_event, declared] if fastest is None else [by_event, declared, self._apart(name)]
         return min(component.longest_step(instance.effect), _taking(*min(turns), fastest))
@@ -274,13 +274,13 @@ class Movements:
         why = f"a sample of {name} is needed every {2.0 * SHOWN:g} deg"
         return math.radians(SHOWN) if other else math.inf, why
 
-    def _mean_speed(self, scene: Scene, name: str, passed: tuple[str, ...] = ()) -> float | None:
+    def mean_speed(self, scene: Scene, name: str, passed: tuple[str, ...] = ()) -> float | None:
         """The mean speed of the shafts by which an instance moves [rad/s]; None where it is not known."""
         angles = self.angles(name)
         if not angles:
             return scene.instances[name].own_speed
         turning = {angle.partition(".")[0] for angle in angles} - {name, *passed}
-        speeds = [self._mean_speed(scene, each, (*passed, name)) for each in sorted(turning)]
+        speeds = [self.mean_speed(scene, each, (*passed, name)) for each in sorted(turning)]
         if not scene.instances[name].fmu.shaft_inputs:  # it may turn by itself as well
             speeds.append(scene.instances[name].own_speed)
         return max((each for each in speeds if each is not None), default=None)
