@@ -35,6 +35,7 @@ def main() -> None:
         trial(*sys.argv[1:])
         return
     masters = {tool: {case: asked("master", tool, case) for case in tools.CASES} for tool in tools.ALONE}
+    late = {(tool, steps): asked("late", tool, str(steps)) for tool, steps in tools.LATE}
     checkers = {
         checker: {fmi: asked("checker", checker, fmi) for fmi in ("2", "3")} for checker in tools.CHECKERS
     }
@@ -56,7 +57,7 @@ def main() -> None:
             for root, paths in places.items()
             for path in paths
         ]
-    text = written(masters, checkers, releases, small, theirs, found, tools.STEPS, others.MOST)
+    text = written(masters, late, checkers, releases, small, theirs, found, tools.STEPS, others.MOST)
     TARGET.write_text(text, encoding="utf-8")
     print(TARGET)
 
@@ -92,6 +93,8 @@ def trial(kind: str, *words: str) -> None:
     try:
         if kind == "master":
             say({"difference": tools.tried(*words)})
+        elif kind == "late":
+            say(tools.late(words[0], int(words[1])))
         elif kind == "checker":
             say({"number": tools.checked(words[0], int(words[1]))})
         elif kind == "version":

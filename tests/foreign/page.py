@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from typing import Any
 
 Said = dict[str, Any]
+SEEN = 0.01  # of the largest value: what a table lists
 
 HEAD = """# Other tools
 
@@ -20,6 +21,14 @@ a weft insertion and, over a dobby, a heald frame, where each wire is a step lat
 the first three and the lift of the frame, from the third step on, since some tools start wires at 0. The
 whole loom is the demo as one FMU. FMI is 2.0 where nothing else is said, and packages are of SSP 1.0, with
 FMUs of FMI 3.0 of SSP 2.0.
+"""
+LATE = """
+## The demo as a package
+
+The same differences of the demo, over all steps of a revolution, for the outputs that are off by {seen:g} or
+more in the first column, the worst of all instances of a mechanism. Each wire is a step late. What jumps at a
+blow of a damper against its stop is off by the whole jump at the one or two samples by which the blow comes
+late, however small the steps; all other differences shrink with the step.
 """
 CHECKERS = """
 ## Checkers
@@ -55,6 +64,7 @@ supports model exchange (ME) alone is solved here, and by CVODE in fmpy. Of {cou
 
 def written(
     masters: dict[str, dict[str, Said]],
+    late: dict[tuple[str, int], Said],
     checkers: dict[str, dict[str, Said]],
     releases: dict[str, str],
     small: dict[str, Said],
@@ -81,6 +91,10 @@ def written(
                 ),
             ),
             *(f"\n{tool}: {reason}." for tool, said in masters.items() for reason in absent(said)),
+            LATE.format(seen=SEEN),
+            table(
+                ["output", *(f"{tool}, {steps} steps" for tool, steps in late)], late_rows([*late.values()])
+            ),
             CHECKERS,
             table(
                 ["checker", "version", "FMI 2.0", "FMI 3.0"],
@@ -125,6 +139,13 @@ def written(
             "",
         ]
     )
+
+
+def late_rows(late: list[Said]) -> list[list[str]]:
+    """The outputs that are off, the worst first, and how far in each trial."""
+    worst = late[0] if late else {}
+    names = sorted((name for name, off in worst.items() if off >= SEEN), key=lambda name: -worst[name])
+    return [[f"`{name}`", *(f"{said.get(name, math.nan):.2g}" for said in late)] for name in names]
 
 
 def kind(said: Said) -> str:

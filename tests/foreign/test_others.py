@@ -50,6 +50,7 @@ def test_the_page_says_what_ran_and_what_did_not() -> None:
             "one": {"alone": {"difference": 0.0}, "whole": {"difference": 2e-15}},
             "other": {"alone": {"absent": "gone"}},
         },
+        {("one", 500): {"a.x": 0.5, "a.y": 0.001}, ("one", 1000): {"a.x": 0.25, "a.y": 0.0}},
         {"checker": {"2": {"number": 17}}},
         {"one": "1.0", "other": "", "checker": "2.0"},
         {
@@ -66,6 +67,7 @@ def test_the_page_says_what_ran_and_what_did_not() -> None:
     )
     lines = text.splitlines()
     assert "| one | 1.0 | 0 | 2e-15 |" in lines and "| other | not run | - |" in lines
+    assert "| `a.x` | 0.5 | 0.25 |" in lines and "a.y" not in text
     assert "other: gone." in lines and "| checker | 2.0 | 17 |" in lines
     assert "| a.fmu |  |  |  |  |  | it is a\\|b |" in lines and "| b.fmu |  |  |  | 5 |  | 1e-03 |" in lines
     assert "| twice | 2 | 2 | 1 |" in lines and "| no end | wrong | no\\|end | 4 |" in lines

@@ -15,6 +15,7 @@ from whole_fmus import exported
 from loomfmu.components import COMPONENTS, WeftInsertion
 from loomfmu.cosim.importing.built import file_of
 from loomfmu.cosim.scenes import scene as scenes
+from loomfmu.cosim.scenes.instances import stem
 from loomfmu.fmi.native.platforms import host
 
 STEPS = 1000
@@ -92,6 +93,23 @@ CASES: dict[str, Callable[[str, Path], float]] = {
     "whole loom": partial(loom, 2),
     "whole loom, FMI 3.0": partial(loom, 3),
 }
+
+
+LATE = (("libcosim", 500), ("libcosim", 1000), ("libcosim", 2000), ("ecos", 1000), ("OMSimulator", 1000))
+
+
+def late(tool: str, steps: int) -> dict[str, float]:
+    """The worst difference of each output of the demo as a package, over all instances of a mechanism."""
+    scene = demo(steps)
+    with TemporaryDirectory() as directory:
+        expected = ours(scene, Path(directory))
+        found = MASTERS[tool](scene, packed(scene, Path(directory)))
+    worst: dict[str, float] = {}
+    for signal, values in expected.items():
+        owner, _, variable = signal.partition(".")
+        name = f"{stem(owner)}.{variable}"
+        worst[name] = max(worst.get(name, 0.0), difference({signal: values[1:]}, found))
+    return worst
 
 
 def tried(tool: str, case: str) -> float:
