@@ -14,12 +14,10 @@ import many_rows
 import precision
 import proving
 import pruning
-import reading
 import scaling
 import start_up
 import summary
 import sweep_runs
-import writing
 from records import read
 from texts import Draw, Figures, Find, items, parts, table
 
@@ -39,8 +37,6 @@ BENCHMARKS: dict[str, tuple[str, ModuleType]] = {
     many_rows.NAME: ("Many rows at once", many_rows),
     start_up.NAME: ("Start-up", start_up),
     live_pages.NAME: ("The page in which the loom runs", live_pages),
-    writing.NAME: ("Writing traces", writing),
-    reading.NAME: ("Reading traces", reading),
     proving.NAME: ("Proofs", proving),
     guard.NAME: ("Guard", guard),
 }
