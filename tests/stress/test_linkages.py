@@ -38,6 +38,7 @@ REED = (
     "rod_length",
     "reed_height",
 )
+SOME_MACHINES = ("WL680-3600", "WL450-5400")
 
 
 def problem(component: type[Component], given: dict[str, Any]) -> int:
@@ -124,3 +125,51 @@ def test_how_near_a_dead_point_the_crank_may_come(cone, clear):
         rocker_angle=arc_cosine(cosine(cone) - clear), crank_cone=cone, planar_linkage=False, speed=1.0
     )
     assert weft.initialize(0.0) == (1 if clear < CLEAR else 0)
+
+
+@pytest.mark.parametrize("machine", SOME_MACHINES)
+@pytest.mark.parametrize("name", WEFT)
+def test_a_little_more_of_a_length_changes_little(machine, name):
+    base = dict(parameters("WeftInsertion", machine=machine))
+
+    def outputs(share: float) -> list[float]:
+        weft = WeftInsertion(**(base | {name: base[name] * (1.0 + share)}), speed=1.0)
+        assert weft.initialize(0.0) == 0
+        rows = []
+        for n in range(120):
+            weft.step(TURN * n / 120.0, 0.0)
+            rows += [weft.travel, weft.velocity, weft.acceleration]
+        return rows
+
+    middle = outputs(0.0)
+    scale = max(map(fabs, middle))
+    if base[name] == 0.0:
+        return
+    slopes = {}
+    for share in (1e-4, -1e-4, 1e-6, 1e-9, -1e-9, 1e-12, -1e-12):
+        slopes[share] = [(one - other) / share for one, other in zip(outputs(share), middle, strict=True)]
+    steepest = max(map(fabs, slopes[1e-6]))
+    for share, slope in slopes.items():
+        # curvature: as much again for a change of the whole length, a thousand times near a dead point; and
+        # rounding of travel and derivatives, some 30 * 1e-16, over the share
+        slack = 1e3 * fabs(share - 1e-6) * steepest + 100 * 1.1e-16 * scale / fabs(share)
+        worst = max(fabs(one - other) for one, other in zip(slope, slopes[1e-6], strict=True))
+        assert worst <= slack, share
+
+
+@pytest.mark.parametrize("factor", [1e-2, 1e-1, 10.0])
+def test_a_linkage_of_any_size_is_similar(factor):
+    # all lengths scaled: angles and so the velocity of the sector as before
+    base = dict(parameters("WeftInsertion", machine="WL680-3600"))
+    lengths = ("crank_length", "coupler_length", "output_length", "pivot_x", "pivot_y")
+    one, other = (
+        WeftInsertion(**(base | {name: base[name] * scale for name in lengths}), speed=1.0)
+        for scale in (1.0, factor)
+    )
+    assert one.initialize(0.0) == other.initialize(0.0) == 0
+    for n in range(100):
+        for each in (one, other):
+            each.step(TURN * n / 100.0, 0.0)
+        # as many roundings, of other numbers, over 0.1 for the nearest dead point
+        assert other.travel == pytest.approx(one.travel, abs=1e-13)
+        assert other.acceleration == pytest.approx(one.acceleration, abs=1e-12)

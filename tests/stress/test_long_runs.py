@@ -4,12 +4,13 @@ import itertools
 from math import fabs, isfinite
 from typing import Any
 
+import numpy as np
 import pytest
 from damper_reference import frame
 from driving import declared
 from whole_loom import TURN, WholeLoom
 
-from loomfmu.components import COMPONENTS, WarpTension
+from loomfmu.components import COMPONENTS, HealdDamper, WarpTension
 
 MILLION = 10**6
 SPEED = 60.0  # rad/s
@@ -75,6 +76,57 @@ def test_a_loom_started_a_million_turns_later_does_the_same():
     # the angle's rounding over the length of a step, 9 mrad, is what velocities and accelerations of the
     # samples contradict each other by: 2e-7. A carrier that meets its stops multiplies it by ten
     assert worst[0] < 1e-6, worst[1]
+
+
+def driven(damper: HealdDamper, revolutions: int, steps: int) -> np.ndarray:
+    """Displacement, rate and energy at the end of each revolution, and the largest displacement in it."""
+    damper.inputs_at_step_end = True
+    size = TURN / SPEED / steps
+    motion = [frame(n * size, SPEED) for n in range(2 * steps)]  # two picks are a period
+    damper.lift, damper.velocity, damper.acceleration = motion[0]
+    assert damper.initialize(0.0) == 0
+    found = []
+    for turn in range(revolutions):
+        largest = 0.0
+        for n in range(steps):
+            damper.lift, damper.velocity, damper.acceleration = motion[(turn * steps + n + 1) % (2 * steps)]
+            assert damper.step((turn * steps + n) * size, size) == 0
+            largest = max(largest, fabs(damper.displacement))
+        own = (
+            0.5 * damper.carrier_mass * damper.rate**2
+            + 2.0 * damper.spring_stiffness * damper.displacement**2
+        )
+        found.append((damper.displacement, damper.rate, own, largest))
+    return np.array(found)
+
+
+@pytest.mark.parametrize("revolutions", [200, pytest.param(10**4, marks=pytest.mark.slow)])
+def test_a_damped_carrier_settles_and_stays(revolutions):
+    found = driven(HealdDamper(damping_ratio=0.05, free_travel=1.0), revolutions, 45)
+    # after 60 revolutions exp(-0.05 * 40 * 6.3) of the start is left; two picks are a period
+    settled = found[160:]
+    for column in settled[::2].T, settled[1::2].T:
+        for values in column:
+            assert np.ptp(values) <= 1e-11 * np.max(np.abs(found))
+
+
+@pytest.mark.parametrize("revolutions", [200, pytest.param(10**4, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("free_travel", [1.0, 0.015])
+def test_an_undamped_carrier_gains_no_energy(revolutions, free_travel):
+    found = driven(
+        HealdDamper(damping_ratio=0.0, free_travel=free_travel, stop_restitution=1.0), revolutions, 45
+    )
+    largest = found[:, 3]
+    half = revolutions // 2
+    if free_travel == 1.0:
+        # a sum of two motions that do not fade: its largest is the same early and late, but for the beat
+        # of their phases, which a hundred turns show to a hundredth
+        assert largest[half:].max() == pytest.approx(largest[:half].max(), rel=1e-2)
+        assert found[half:, 2].max() == pytest.approx(found[:half, 2].max(), rel=2e-2)
+    else:
+        # between elastic stops it rattles without rule, as fast as frame and stops can throw it, no faster
+        assert np.all(np.isfinite(found))
+        assert largest.max() < 0.03
 
 
 def test_the_warps_extremes_do_not_creep():
