@@ -19,7 +19,7 @@ import running
 import start_up
 import written
 from children import Child, Failed
-from limits import HOST, LOOP, WHOLE
+from limits import HOST, LOOP, NUMPY, WHOLE
 from precision import delay
 from running import run
 
@@ -122,9 +122,12 @@ def test_an_interrupted_run_leaves_a_report_of_what_was_measured(
     assert "11 of 12 FMUs" in (tmp_path / written.REPORT).read_text(encoding="utf-8")
 
 
-def test_programs_in_c_give_the_bits_of_the_native_fmus(done: Done) -> None:
+def test_programs_in_c_give_the_bits_of_the_native_fmus_and_numpy_their_digits(done: Done) -> None:
     away = {row["what"]: row["largest difference [share]"] for row in find(done("limits"), "limits")}
-    assert away[LOOP] == away[HOST] == away[WHOLE] == 0.0
+    assert away[LOOP] == 0.0
+    assert away[HOST] == 0.0
+    assert away[WHOLE] == 0.0
+    assert 0.0 < away[NUMPY] < 1e-13  # some hundred roundings: the terms stand in another order
 
 
 def test_signals_that_follow_from_the_angle_have_the_digits_of_the_references(done: Done) -> None:
