@@ -117,7 +117,7 @@ def test_each_kind_is_here() -> None:
 
 SHORT = {"revolutions": 0.6, "steps_per_revolution": 25, "shaft.ramp_duration": "0 s"}
 SCENES: dict[str, tuple[Callable[[], Any], tuple[float | None, ...]]] = {  # with speeds [rev/min]
-    "loom": (lambda: on_the_loom({**SHORT, "revolutions": 2, "steps_per_revolution": 360}), (None, 500.0)),
+    "loom": (lambda: on_the_loom({**SHORT, "revolutions": 2, "steps_per_revolution": 180}), (None, 500.0)),
     "motor": (lambda: with_claims(MOTOR, ON_A_MOTOR), (None, 410.0)),
     "short": (lambda: on_the_loom(SHORT), (None,)),
 }

@@ -95,16 +95,18 @@ def test_the_site_refers_to_no_host(site: Path) -> None:
         assert {*CDN.findall(text)} <= NEVER_FETCHED, script
 
 
+@pytest.mark.slow
 def test_the_report_of_the_demo_is_on_the_tour(site: Path) -> None:
     assert '<iframe class="framed" src="wl680_3600.html"' in (site / "docs" / "tour.html").read_text()
     assert "6 claims hold" in (site / "docs" / "wl680_3600.html").read_text()
 
 
+@pytest.mark.slow
 def test_equations_are_typeset(site: Path) -> None:
     assert "<mfrac>" in (site / "fmus" / "weft_insertion" / "index.html").read_text()
 
 
-@pytest.mark.few(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("page", ["index", "docs/tour", "fmus/weft_insertion/index", "reference/claims"])
 def test_pages_open_wide_and_narrow_and_in_the_dark(
     site: Path, opened: Callable[..., Any], page: str

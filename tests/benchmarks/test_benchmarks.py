@@ -122,6 +122,7 @@ def test_an_interrupted_run_leaves_a_report_of_what_was_measured(
     assert "11 of 12 FMUs" in (tmp_path / written.REPORT).read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_programs_in_c_give_the_bits_of_the_native_fmus_and_numpy_their_digits(done: Done) -> None:
     away = {row["what"]: row["largest difference [share]"] for row in find(done("limits"), "limits")}
     assert away[LOOP] == 0.0
@@ -130,6 +131,7 @@ def test_programs_in_c_give_the_bits_of_the_native_fmus_and_numpy_their_digits(d
     assert 0.0 < away[NUMPY] < 1e-13  # some hundred roundings: the terms stand in another order
 
 
+@pytest.mark.slow
 def test_signals_that_follow_from_the_angle_have_the_digits_of_the_references(done: Done) -> None:
     (row,) = (row for row in find(done("precision"), "precision") if row["method"] == "loomfmu, native FMUs")
     assert row["error of heald_1.lift [share of largest]"] < 1e-14  # tens of roundings

@@ -16,7 +16,7 @@ LOOPED = Path(__file__).parents[2] / "sims" / "light_shaft.toml"  # whose loop i
 SPEED = {"shaft.speed": "600 rpm", "steps_per_revolution": STEPS, "revolutions": 1}
 
 
-@pytest.mark.few(1)
+@pytest.mark.slow
 @pytest.mark.usefixtures("natives")
 @pytest.mark.parametrize("master", ["libcosim", "ecos"])
 @pytest.mark.parametrize("looped", [False, True])

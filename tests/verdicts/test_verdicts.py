@@ -20,7 +20,7 @@ SETTINGS = [
 ]
 
 
-@pytest.mark.few(4)
+@pytest.mark.few(2)
 @pytest.mark.parametrize("family", FAMILIES)
 def test_no_verdict_is_wrong(family: str) -> None:
     scene = drawn(SEED, family, 0)._replace(settings=SETTINGS, fine=[5760, 11520])

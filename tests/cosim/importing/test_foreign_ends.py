@@ -133,15 +133,16 @@ def brief(tmp_path: Path) -> Path:
     return tmp_path
 
 
-@pytest.mark.few(1)
+STUDIES: list[Callable[[Path], object]] = [
+    lambda place: limit(place / "m.toml", vary=VARIED, points=3),
+    lambda place: tolerances(place / "m.toml", vary=[VARIED]),
+    lambda place: fit(place / "m.toml", place / "data.csv", vary=VARIED),
+    lambda place: optimize(place / "study.toml", output=place, processes=1),
+]
+
+
 @pytest.mark.parametrize(
-    "study",
-    [
-        lambda place: limit(place / "m.toml", vary=VARIED, points=3),
-        lambda place: tolerances(place / "m.toml", vary=[VARIED]),
-        lambda place: fit(place / "m.toml", place / "data.csv", vary=VARIED),
-        lambda place: optimize(place / "study.toml", output=place, processes=1),
-    ],
+    "study", [STUDIES[0], *(pytest.param(each, marks=pytest.mark.slow) for each in STUDIES[1:])]
 )
 def test_a_run_that_is_cut_short_has_no_value_in_a_study(
     brief: Path, study: Callable[[Path], object]

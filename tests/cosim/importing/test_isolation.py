@@ -393,7 +393,7 @@ def test_the_second_ctrl_c_ends_a_run_whose_fmu_hangs(tmp_path: Path) -> None:
     assert running.returncode == 130
 
 
-@pytest.mark.few(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("processes", [1, 2])
 def test_a_row_whose_fmu_ends_the_process_leaves_the_others_unharmed(tmp_path: Path, processes: int) -> None:
     for row in swept(tmp_path, "QUIT", IN_THIS_PROCESS, processes)[:2]:
