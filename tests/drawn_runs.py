@@ -8,9 +8,8 @@ import numpy as np
 from loomfmu.traces import Channel, Recording
 
 DISPLAY = {"m": "mm", "rad": "deg", "rad/s": "rev/min"}
-Drawn = Mapping[
-    str, tuple[Any, ...]
-]  # of each signal its unit, its samples and perhaps what else is known of it
+# of each signal its unit, its samples and perhaps what else is known of it
+Drawn = Mapping[str, tuple[Any, ...]]
 
 
 def drawn(

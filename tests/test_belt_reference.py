@@ -203,8 +203,9 @@ def test_the_inertia_of_a_chord_that_turns():
 def test_the_inertia_of_the_chord_is_not_small():
     """A finding: the chord from half the clearance to the head turns so fast that it bends the belt."""
     for bow, least, most in ((own_bow, 0.2, 0.6), (bow_of_span, 0.04, 0.08)):
+        # at 104 deg
         none, less, more = (
             farthest(bow, offset=offset, **PLAY)[11] for offset in (0.0, 0.5 * CLEARANCE, -0.5 * CLEARANCE)
-        )  # at 104 deg
+        )
         assert least < 1.0 - less / none < most
         assert least < more / none - 1.0 < most

@@ -148,9 +148,8 @@ def verdicts_agree(page: Any, expected: Any) -> None:
         assert mine["worst"] == pytest.approx(its.worst, rel=1e-8, abs=1e-12), its
         assert mine["bound"] == pytest.approx(its.bound, rel=1e-14), its
         if math.isfinite(its.time):
-            between = (
-                3e-4 if its.signal.startswith("belt") else 1e-8
-            )  # a step, where the run asks the belt itself
+            # a step, where the run asks the belt itself
+            between = 3e-4 if its.signal.startswith("belt") else 1e-8
             assert mine["time"] == pytest.approx(its.time, abs=between), its
 
 
@@ -434,10 +433,11 @@ def test_sliders_show_where_the_claims_hold(page: Any) -> None:
     assert "the belt keeps a margin of 10 %: holds up to 646.8164 rev/min" in limits.first.inner_text()
     assert "All claims hold" in limits.last.inner_text()
     (held,) = limits.first.locator("i").all()
+    # (646.8164 - 400) / 400
     assert re.findall(r"[\d.]+(?=%)", held.get_attribute("style")) == [
         "0.000",
         "61.704",
-    ]  # (646.8164 - 400) / 400
+    ]
     turned(page, 0.33, 1)  # limits of the speed are those of the scene's clearance
     assert limits.first.is_hidden() and limits.last.is_visible()
     turned(page, 0.3, 1)
@@ -472,9 +472,8 @@ def test_what_is_out_of_sight_shows_the_same_place_and_run(page: Any, fast: Trac
     """A picture of the whole page, taken without scrolling: caption, drawings and plots agree."""
     travel = page.locator("#motion-drive-weft [data-value]").first
     place = page.locator("#motion-place")
-    assert (
-        place.inner_text().startswith("rev. 1, 137.0°") and travel.inner_text() != "0.0"
-    )  # at the worst claim
+    # at the worst claim
+    assert place.inner_text().startswith("rev. 1, 137.0°") and travel.inner_text() != "0.0"
     turned(page, 700.0)
     page.evaluate("loomfmu.seek(Math.PI)")
     innermost = 1000.0 * float(np.interp(math.pi, fast.shaft_angle, fast["weft.travel"]))

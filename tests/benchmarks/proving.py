@@ -21,11 +21,12 @@ OVER = (
     "belt.bending_stiffness=0.245..0.255",
     "belt.head_mass=105g..113g",
 )
+# repeats, numbers of parameters
 KINDS: dict[str, tuple[int, tuple[int, ...]]] = {
     "full": (3, (0, 1, 2, 4)),
     "quick": (3, (0, 1)),
     "tiny": (1, (0,)),
-}  # repeats, numbers of parameters
+}
 
 
 def measure(effort: str, notes: Notes) -> list[Table]:

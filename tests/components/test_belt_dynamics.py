@@ -300,9 +300,8 @@ def test_a_belt_that_folds_has_its_energy_balanced_until_then(belt_in_c):
         assert loom.belt.folded and loom.belt.followed
         assert abs(loom.belt.energy_residual) < 1e-8 * loom.belt.energy_through
         found.append(loom.belt.largest_deflection)
-    assert found[0] == pytest.approx(
-        found[1], rel=3e-3
-    )  # it counts as folded after a step of the integration
+    # it counts as folded after a step of the integration
+    assert found[0] == pytest.approx(found[1], rel=3e-3)
 
 
 @pytest.mark.parametrize("beyond", [1.01, 1.4])

@@ -385,9 +385,8 @@ def test_the_end_shapes_act_on_the_modes_as_their_integrals_say():
 @pytest.mark.parametrize("length", [0.05, 0.17, 0.31])
 def test_the_end_shapes_of_an_unloaded_belt_have_the_least_bending_energy(length):
     w, x, _slopes, bends = end_shapes()
-    bow = -((pi / 0.2 * length) ** 2) * np.sin(
-        pi / 0.2 * length * x
-    )  # curvature of the unloaded belt, over x
+    # curvature of the unloaded belt, over x
+    bow = -((pi / 0.2 * length) ** 2) * np.sin(pi / 0.2 * length * x)
 
     def amplitudes(length):
         return np.array(astuple(end_amplitudes(Bow(BELT, 1.0, 0.2), length, True)))
@@ -396,9 +395,8 @@ def test_the_end_shapes_of_an_unloaded_belt_have_the_least_bending_energy(length
     expected = np.linalg.solve(energies, [w @ (bow * bend) for bend in bends])
     assert amplitudes(length)[:2] == pytest.approx(expected, rel=1e-9, abs=1e-9 * abs(expected[0]))
     rates = (amplitudes(length + 1e-6) - amplitudes(length - 1e-6))[:4] / 2e-6
-    assert amplitudes(length)[2:] == pytest.approx(
-        rates, rel=1e-6, abs=1e-6 * abs(rates[0])
-    )  # of differences
+    # of differences
+    assert amplitudes(length)[2:] == pytest.approx(rates, rel=1e-6, abs=1e-6 * abs(rates[0]))
 
 
 def test_amplitudes_of_the_end_shapes_turn_clamped_ends_alone():

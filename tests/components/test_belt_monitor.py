@@ -266,9 +266,8 @@ def test_the_load_changes_where_the_head_turns_within_a_step():
     belt.step(0.0, 0.1)
     deepest = 1.25 - belt.idle_travel - belt.head_length
     expected = 1.0 - (1.0 - 8e-4) * (0.8 * deepest) ** 2 / (pi * pi * 0.25)
-    assert belt.lowest_margin == pytest.approx(
-        expected, abs=1e-9
-    )  # the place of a jump, by 40 golden sections
+    # the place of a jump, by 40 golden sections
+    assert belt.lowest_margin == pytest.approx(expected, abs=1e-9)
 
 
 def test_a_change_of_tension_within_a_step_is_joined():

@@ -210,9 +210,8 @@ def test_servo_stands_at_the_back_and_beats_up_in_time():
     assert beat_up.position == pytest.approx(beat_up.front_limit, abs=1e-15)
     for degrees_on in (60.1, 90.0, 180.0, 270.0, 299.9):
         reed = placed(0.3 + radians(degrees_on), servo)
-        assert reed.position == pytest.approx(
-            reed.back_limit, abs=1e-7
-        )  # lengths rounded to 1 um: half a turn
+        # lengths rounded to 1 um: half a turn
+        assert reed.position == pytest.approx(reed.back_limit, abs=1e-7)
         assert (reed.velocity, reed.acceleration, reed.crank_torque) == (0.0, 0.0, 0.0)
     # at its front the crank turns at 2 pi / (120 deg less a ramp of 30 deg): four times as fast as the shaft
     assert beat_up.crank_velocity == pytest.approx(4.0 * SPEED, rel=1e-15)
@@ -244,9 +243,8 @@ def test_servo_delivers_the_power_of_the_masses_and_the_shaft_none(run, share):
 
 
 CLOTH = {"weaving_resistance": 0.2}
-TAKEN = 0.2 * (
-    log(1.7 / 0.2) - 1.5 / 1.7
-)  # J, of a pick's resistance from 2 mm down to 0.5 mm, 0.3 mm at least
+# J, of a pick's resistance from 2 mm down to 0.5 mm, 0.3 mm at least
+TAKEN = 0.2 * (log(1.7 / 0.2) - 1.5 / 1.7)
 
 
 @pytest.mark.parametrize("more", [{}, {"servo": True}, {"reed_mass": 0.0, "crank_direction": -1}], ids=str)

@@ -51,9 +51,8 @@ def test_round_cam_is_round(trailing):
     for k in range(0, 1440, 97):
         roller, pivot = cam.path[k], APART * np.array([cos(cam.angle[k]), sin(cam.angle[k])])
         push, arm = roller - (CRANK, 0.0), roller - pivot
-        between = abs(push[0] * arm[1] - push[1] * arm[0]) / (
-            np.hypot(*push) * np.hypot(*arm)
-        )  # sine of the transmission angle
+        # sine of the transmission angle
+        between = abs(push[0] * arm[1] - push[1] * arm[0]) / (np.hypot(*push) * np.hypot(*arm))
         assert cos(cam.pressure_angle[k]) == pytest.approx(between, abs=1e-7)
 
 

@@ -63,9 +63,8 @@ class Instance:
     """
 
     component: c_void_p
-    types: ClassVar[
-        dict[str, tuple[str, Any]]
-    ]  # kind of a variable -> word in the functions' names, type in C
+    # kind of a variable -> word in the functions' names, type in C
+    types: ClassVar[dict[str, tuple[str, Any]]]
     flag: Any  # type of a yes or no
     rates = "GetRealOutputDerivatives"
 

@@ -56,9 +56,8 @@ def test_the_reference_is_right(name):
 def test_spherical_linkage_closes(arc_share, crank_cone, theta):
     rocker = acos(arc_share * cos(crank_cone))
     alpha, _first, _second = spherical_rocker(theta, rocker, crank_cone)
-    residual = (
-        cos(rocker) - cos(crank_cone) * cos(alpha) + sin(crank_cone) * sin(alpha) * cos(theta)
-    )  # equation (1)
+    # equation (1)
+    residual = cos(rocker) - cos(crank_cone) * cos(alpha) + sin(crank_cone) * sin(alpha) * cos(theta)
     assert abs(residual) < 2e-15  # rounding of three terms of size 1
 
 

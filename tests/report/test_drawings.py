@@ -167,9 +167,8 @@ def test_the_names_of_the_sector_gears_are_beside_the_wheels(pages: dict[str, Pa
 
 def test_the_belt_leaves_its_wheel_at_the_height_of_its_guide(pages: dict[str, Path], opened: Open) -> None:
     belts = opened(pages["whole"]).locator("#motion-front-transfer .belt")
-    wheel, way = (
-        belts.nth(place).bounding_box() for place in range(2)
-    )  # wound on it, and from there to the head
+    # wound on it, and from there to the head
+    wheel, way = (belts.nth(place).bounding_box() for place in range(2))
     assert wheel["y"] + wheel["height"] == pytest.approx(way["y"] + way["height"], abs=0.5)  # px
     assert wheel["x"] + wheel["width"] == pytest.approx(way["x"], abs=4.0)  # half a line's width each
 

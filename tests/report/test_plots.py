@@ -125,9 +125,10 @@ def test_plots_and_cursor_move_one_another(page: Any, demo: Trace) -> None:
     # 6 pi over some 1000 pixels: a click is right to a pixel
     assert page.evaluate("loomfmu.position") == pytest.approx(2 * np.pi, abs=0.03)
     value = page.inner_text("figure[data-name='belt.margin'] output").split(" | ")[0]
+    # five digits are shown
     assert float(value) == pytest.approx(
         demo["belt.margin"][np.searchsorted(demo.shaft_angle, 2 * np.pi)], rel=1e-4
-    )  # five digits are shown
+    )
 
 
 def test_dragging_zooms_all_plots_and_leaves_the_cursor(page: Any) -> None:

@@ -137,9 +137,8 @@ def crest(function, start, end, samples=4000):
 @pytest.mark.parametrize(("r", "b", "e"), LEVERS)
 def test_peaks_of_the_levers(r, b, e):
     drive = dobby("slotted_levers", lever_radius=r, driven_radius=b, eccentricity=e)
-    assert drive.highest_speed == pytest.approx(
-        r * b / ((r - e) * (b - e)), rel=1e-11
-    )  # (r / (r - e))^2 roundings
+    # (r / (r - e))^2 roundings
+    assert drive.highest_speed == pytest.approx(r * b / ((r - e) * (b - e)), rel=1e-11)
     for order, found in ((2, drive.highest_acceleration), (3, drive.highest_jerk)):
         # half a turn, its quick end drawn out: pi - x from 3 down to 1e-4 in equal ratios, and the end itself
         largest = max(

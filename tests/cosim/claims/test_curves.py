@@ -63,9 +63,8 @@ def test_values_extremes_and_zeros_are_those_of_the_joining_polynomial(rates: in
         for sign in (1.0, -1.0):
             found = judge(trace, kind="above" if sign > 0.0 else "below", signal="a.x", bound=0.0)
             assert abs(found.worst - sign * (sign * values).min()) < 1e-12
-            assert (
-                abs(polynomial.polyval(found.time, coefficients) - found.worst) < 1e-11
-            )  # times that are equal
+            # times that are equal
+            assert abs(polynomial.polyval(found.time, coefficients) - found.worst) < 1e-11
         zeros, passed = within(polynomial.polyroots(coefficients)), crossings(trace)
         assert len(passed) == len(zeros)
         assert np.allclose(passed, zeros, rtol=0.0, atol=1e-9)  # of zeros that lie close together

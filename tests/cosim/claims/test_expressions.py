@@ -289,9 +289,8 @@ def test_it_is_known_where_its_signals_are_and_off_by_what_they_are() -> None:
 
 def test_nobody_trusts_the_difference_of_two_large_numbers_beyond_their_own_errors() -> None:
     assert Expressed(run(), read("(a.x * b.x) / 1 m - (b.x * a.x) / 1 m")).noise(1e-8, 0.0) > 8e-8
-    assert (
-        Expressed(run(), read("a.x - a.x")).noise(1e-8, 0.0) < 1e-300
-    )  # a sum of shares: none of it is left
+    # a sum of shares: none of it is left
+    assert Expressed(run(), read("a.x - a.x")).noise(1e-8, 0.0) < 1e-300
     assert Expressed(run(), read("a.x - b.x")).noise(0.0, 5e-3) > 5e-3  # each has moved by a metre at least
 
 

@@ -229,9 +229,8 @@ def test_rolled_back_extremes_and_counters_are_those_of_the_last_try() -> None:
     lowest, margin = found.trace["belt.lowest_margin"], found.trace["belt.margin"]
     # the tries of a step reach far; were they not taken back, the latched value would lie below every sample
     assert np.all(lowest <= np.minimum.accumulate(margin) + 1e-15)
-    assert (
-        np.min(margin) - lowest[-1] < 4e-3
-    )  # what a margin with a curvature of 90 falls within half a degree
+    # what a margin with a curvature of 90 falls within half a degree
+    assert np.min(margin) - lowest[-1] < 4e-3
 
 
 def test_a_loop_without_solution_is_told_with_place_and_time(tmp_path: Path) -> None:

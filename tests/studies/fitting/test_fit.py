@@ -78,9 +78,8 @@ def test_published_buckling_tests_give_the_length_factor_of_the_closed_form() ->
     assert factor.value == pytest.approx(0.80, abs=0.005)  # as printed
     # a linear model of the factor around the result against one of its inverse square: alike to first order
     half = (factor.high - factor.low) / 2.0
-    assert half == pytest.approx(
-        4.302653 * closed.standard_error, rel=1e-3
-    )  # Student's t, 2 degrees of freedom
+    # Student's t, 2 degrees of freedom
+    assert half == pytest.approx(4.302653 * closed.standard_error, rel=1e-3)
     assert found.curves[0].rms == pytest.approx(np.sqrt(np.mean(np.square(closed.residuals))), rel=1e-5)
 
 

@@ -23,9 +23,8 @@ LEVERS = slotted_levers(0.0, R, R, E)[1]  # S' at the slow point
 GEARS_PRINTED = 1.0 + sum(a / (k + 1) for k, a in enumerate(GEARS))  # S' at the slow point by (1.14)
 GEARS_QUOTIENT = (noncircular_gears(STEP, *GEARS)[0] - noncircular_gears(-STEP, *GEARS)[0]) / (2.0 * STEP)
 HARMONIC_START, HARMONIC_PEAK = (harmonic_ends(x, ZETA)[1] for x in (0.0, math.pi))
-HARMONIC_END = (
-    HARMONIC_PEAK + 16.0 * ZETA / 7.0 * 0.5
-)  # by (3.7): the sine from 0 to pi has the integral 2, over 4
+# by (3.7): the sine from 0 to pi has the integral 2, over 4
+HARMONIC_END = HARMONIC_PEAK + 16.0 * ZETA / 7.0 * 0.5
 LINE_KNOT, SINE_KNOT = (law(KNOT, ZETA)[2] for law in (sloped_line, sloped_sine))  # S'' of the first piece
 LINE_PRINTED = 7.0 * math.pi / 8.0 * 4.0 * LINE * (KNOT - math.pi)  # S'' there by (3.13)
 SINE_PRINTED = 4.0 * SINE / math.pi * (8.0 / 7.0 * (KNOT - math.pi))  # S'' there by (3.22)
