@@ -22,24 +22,15 @@ from loomfmu.cli import main
         ("run a --live=3", "loomfmu run: --live takes no value, but has '3'; see loomfmu run --help"),
         ("run a --frobnicate", "loomfmu run: there is no --frobnicate; see loomfmu run --help"),
         ("build --outpt x", "loomfmu build: there is no --outpt; did you mean --output?"),
-        (
-            "sweep a --processes x",
-            "loomfmu sweep: --processes = 'x' is not a whole number; write --pro",
-        ),
-        (
-            "limit",
-            "loomfmu limit: SCENE and --vary are missing; write loomfmu limit SCENE --vary INSTANCE.VARI",
-        ),
-        (
-            "export x",
-            "loomfmu export: --fmu or --ssp is missing; write loomfmu export SCENE.toml --fmu FILE.fmu",
-        ),
-        (
-            "export x.toml --ssp x.ssp --flavour natve",
-            "loomfmu export: --flavour = 'natve' is unknown; did you mean 'native'?",
-        ),
+        ("sweep a --processes x", "loomfmu sweep: --processes = 'x' is not a whole number; write --pro"),
+        ("limit",
+         "loomfmu limit: SCENE and --vary are missing; write loomfmu limit SCENE --vary INSTANCE.VARI"),
+        ("export x",
+         "loomfmu export: --fmu or --ssp is missing; write loomfmu export SCENE.toml --fmu FILE.fmu"),
+        ("export x.toml --ssp x.ssp --flavour natve",
+         "loomfmu export: --flavour = 'natve' is unknown; did you mean 'native'?"),
     ],
-)
+)  # fmt: skip
 def test_a_mistake_in_a_command_is_one_line_with_the_remedy(
     words: str, said: str, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -35,40 +35,22 @@ CLAIMS = [  # kind, arguments, and what is said after the kind
     ("above", {"signal": "belt.margin"}, " needs 'bound'"),
     ("above", {"bound": 1}, " needs 'signal'"),
     ("above", {"signal": "belt.margn", "bound": 1}, ": belt has no output 'margn'; did you mean 'margin'?"),
-    (
-        "dwell",
-        {"heald": "heald_7", "at_least": 1},
-        ": there is no instance 'heald_7'; did you mean 'heald_2'?",
-    ),
-    (
-        "above",
-        MARGIN | {"bound": "1 mm"},
-        ": bound: '1 mm' is in mm, which does not fit a number without a unit",
-    ),
-    (
-        "above",
-        MARGIN | {"window": "10..20"},
-        f": window = '10..20' must be two shaft angles, such as {ANGLES}",
-    ),
+    ("dwell", {"heald": "heald_7", "at_least": 1},
+     ": there is no instance 'heald_7'; did you mean 'heald_2'?"),
+    ("above", MARGIN | {"bound": "1 mm"},
+     ": bound: '1 mm' is in mm, which does not fit a number without a unit"),
+    ("above", MARGIN | {"window": "10..20"},
+     f": window = '10..20' must be two shaft angles, such as {ANGLES}"),
     ("above", MARGIN | {"window": ["1 mm", 2]}, ": window: '1 mm' is in mm, which does not fit rad"),
-    (
-        "lowest_margin",
-        {"bound": "shaft.speed"},
-        ": bound: 'shaft.speed' is not a quantity such as \"685 rpm\"",
-    ),
-    (
-        "dwell_contains",
-        {"heald": "heald_1", "angles": [91]},
-        ": angles: 91 is 5213.916 deg, outside [-360, 360] deg",
-    ),
+    ("lowest_margin", {"bound": "shaft.speed"},
+     ": bound: 'shaft.speed' is not a quantity such as \"685 rpm\""),
+    ("dwell_contains", {"heald": "heald_1", "angles": [91]},
+     ": angles: 91 is 5213.916 deg, outside [-360, 360] deg"),
     ("rapier_in_open_shed", {"head_height": "-5 mm"}, ": head_height = '-5 mm' must not be negative"),
-    (
-        "dwell",
-        {"heald": "heald_1", "at_least": 1, "tolerance": 0.9},
-        ": tolerance = 0.9 is outside (0, 0.5) of the stroke",
-    ),
+    ("dwell", {"heald": "heald_1", "at_least": 1, "tolerance": 0.9},
+     ": tolerance = 0.9 is outside (0, 0.5) of the stroke"),
     ("stop_contacts", {"damper": "damper_1", "at_most": -1}, ": at_most = -1 must not be negative"),
-]
+]  # fmt: skip
 IN_LOOM = [
     *((table("belt") + f"{line}\n", f"belt.{line.split()[0]}{said}") for line, said in BELT.items()),
     *(
@@ -79,61 +61,39 @@ IN_LOOM = [
         (table("damper_1") + claim(kind, **arguments), f"claim {kind!r}{said}")
         for kind, arguments, said in CLAIMS
     ),
-    (
-        table("damper_1") + claim("above", signal="belt.margin") + "bound = nan\n",
-        "claim 'above': bound = nan is not finite",
-    ),
+    (table("damper_1") + claim("above", signal="belt.margin") + "bound = nan\n",
+     "claim 'above': bound = nan is not finite"),
     ('dampers = "no"\n', "loom.dampers = 'no' must be true or false"),
     (table("heald_1", pattern="12"), "heald_1.pattern = '12' is not a string of pegs such as \"1010\""),
-    (
-        table("dobby", law="sloped-sin"),
-        "dobby.law = 'sloped-sin' must be 'uniform', 'harmonic_ends', 'sloped_line', 'sloped_sine',"
-        " 'slotted_levers', 'noncircular_gears', 'spline_cam', 'table' or 'plateau';"
-        " did you mean 'sloped_sine'?",
-    ),
+    (table("dobby", law="sloped-sin"),
+     "dobby.law = 'sloped-sin' must be 'uniform', 'harmonic_ends', 'sloped_line', 'sloped_sine',"
+     " 'slotted_levers', 'noncircular_gears', 'spline_cam', 'table' or 'plateau';"
+     " did you mean 'sloped_sine'?"),
     ('[wires]\n"belt.travl" = false\n', "wires: 'belt.travl' is not wired; did you mean 'belt.travel'?"),
-    (
-        '[wires]\n"belt.travel" = true\n',
-        'wires: "belt.travel" = true must be an output, or false to cut the wire',
-    ),
-    (
-        table("shaft", record=[]),
-        "shaft.record is unknown: record belongs to the scene, write it above the first [table]",
-    ),
-]
+    ('[wires]\n"belt.travel" = true\n',
+     'wires: "belt.travel" = true must be an output, or false to cut the wire'),
+    (table("shaft", record=[]),
+     "shaft.record is unknown: record belongs to the scene, write it above the first [table]"),
+]  # fmt: skip
 IN_MOTION = "[loom]\nbelt_motion = true\n[belt_motion]\n"
 IN_HEAD = [
     ("revolution = 3\n", "revolution is unknown; did you mean 'revolutions'?"),
-    (
-        table("belts_x", a=1),
-        "[belts_x] is unknown and has no component = \"...\" of its own; did you mean 'belt'?",
-    ),
-    (
-        table('"my shaft"', component="MainShaft"),
-        "instance name 'my shaft' must be letters, digits and _, with a letter first",
-    ),
-    (
-        table("time", component="MainShaft"),
-        "instance name 'time' is taken: every trace has a time of its own",
-    ),
-    (
-        table("mine", component="BeltMonito"),
-        "there is no component 'BeltMonito'; did you mean 'BeltMonitor'?",
-    ),
+    (table("belts_x", a=1),
+     "[belts_x] is unknown and has no component = \"...\" of its own; did you mean 'belt'?"),
+    (table('"my shaft"', component="MainShaft"),
+     "instance name 'my shaft' must be letters, digits and _, with a letter first"),
+    (table("time", component="MainShaft"),
+     "instance name 'time' is taken: every trace has a time of its own"),
+    (table("mine", component="BeltMonito"),
+     "there is no component 'BeltMonito'; did you mean 'BeltMonitor'?"),
     (table("mine", component=5), "mine.component = 5 is not a name in quotes"),
-    (
-        table("shaft", component="HealdFrame"),
-        "shaft.component = 'HealdFrame': the shaft of a scene must be a MainShaft or a DrivenShaft",
-    ),
+    (table("shaft", component="HealdFrame"),
+     "shaft.component = 'HealdFrame': the shaft of a scene must be a MainShaft or a DrivenShaft"),
     (IN_MOTION + "guide_end = 3\n", "belt_motion.guide_end = 3 must be 1 (calibrated) or 2 (play)"),
-    (
-        IN_MOTION + "guide_end = 'plya'\n",
-        "belt_motion.guide_end = 'plya' must be 'calibrated' or 'play'; did you mean 'play'?",
-    ),
-    (
-        table("shaft", speed=0),
-        "shaft.speed = 0 rev/min: the shaft's speed sets the step, so it must not be 0",
-    ),
+    (IN_MOTION + "guide_end = 'plya'\n",
+     "belt_motion.guide_end = 'plya' must be 'calibrated' or 'play'; did you mean 'play'?"),
+    (table("shaft", speed=0),
+     "shaft.speed = 0 rev/min: the shaft's speed sets the step, so it must not be 0"),
     (table("loom", machin="x"), "loom.machin is unknown; did you mean 'machine'?"),
     (table("loom", machine="WL680-36"), "there is no machine 'WL680-36'; did you mean 'WL680-3600'?"),
     (table("loom", machine=5), "weft.machine = 5 is not a name in quotes"),
@@ -142,7 +102,7 @@ IN_HEAD = [
     (table("shaft", speed="600 mm"), "shaft.speed: '600 mm' is in mm, which does not fit rad/s"),
     (table("shaft", ripple_order=1.5), "shaft.ripple_order = 1.5 is not a whole number"),
     (claim("abov"), "claim kind = 'abov' is unknown; did you mean 'above'?"),
-]
+]  # fmt: skip
 TURNS = "revolutions = 1"
 WHOLE = [
     (
@@ -156,25 +116,19 @@ WHOLE = [
     (HEAD.replace(TURNS, "revolutions = -1"), "revolutions = -1 is outside [1e-09, 1e+09]"),
     (HEAD.replace(TURNS, "revolutions = 1e-6"), "revolutions = 1e-06 at 90 steps each is less than one step"),
     (HEAD.replace(TURNS, "revolutions = nan"), "revolutions = nan is outside [1e-09, 1e+09]"),
-    (
-        f"record = 'belt.margin'\n{HEAD}{LOOM}",
-        'record = \'belt.margin\' is not a list such as ["belt.*", "weft.travel"]',
-    ),
-    (
-        f"record = ['belt.margn']\n{HEAD}{LOOM}",
-        "record: no output is called 'belt.margn'; did you mean 'belt.margin'?",
-    ),
+    (f"record = 'belt.margin'\n{HEAD}{LOOM}",
+     'record = \'belt.margin\' is not a list such as ["belt.*", "weft.travel"]'),
+    (f"record = ['belt.margn']\n{HEAD}{LOOM}",
+     "record: no output is called 'belt.margn'; did you mean 'belt.margin'?"),
     (HEAD + LOOM + table("heald_1", pattern="10" * 65), "heald_1.pattern has 130 picks; the dobby holds 128"),
     (f"wires = 5\n{HEAD}", 'wires must be a table of "instance.input" = "instance.output"'),
     (f"claims = 5\n{HEAD}", "claims are written as [[claims]] tables, with two brackets"),
     (f"{HEAD}[shaft]\nspeed = {HUGE}\n", f"shaft.speed: {HUGE[:60]}... is too large"),
     (HEAD.replace(TURNS, f"revolutions = {HUGE}"), f"revolutions = {HUGE[:60]}... is outside [1e-09, 1e+09]"),
     (HEAD + LOOM + CLAIM.format(bound=HUGE), f"claim 'lowest_margin': bound: {HUGE[:60]}... is too large"),
-    (
-        f"{HEAD}{LOOM}[heald]\npattern_length = {HUGE}\n",
-        f"heald_1.pattern_length = {HUGE[:60]}... is outside [1, 128]",
-    ),
-]
+    (f"{HEAD}{LOOM}[heald]\npattern_length = {HUGE}\n",
+     f"heald_1.pattern_length = {HUGE[:60]}... is outside [1, 128]"),
+]  # fmt: skip
 
 
 @pytest.mark.parametrize(
@@ -221,23 +175,17 @@ def test_a_value_that_is_set_is_one_of_a_variable(capsys: pytest.CaptureFixture[
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        (
-            '[weft]\ncrank_cone = "80 deg"\n',
-            "weft: the spherical linkage does not close over a whole turn: |cos(rocker_angle = 60 deg)|"
-            " reaches or exceeds |cos(crank_cone = 80 deg)|",
-        ),
-        (
-            '[weft]\ncoupler_length = "20 mm"\n',
-            "weft: the planar four-bar does not close over the rocker's swing: crank_length = 150 mm,"
-            " coupler_length = 20 mm, output_length = 121 mm, pivot at (243 mm, 258 mm)",
-        ),
+        ('[weft]\ncrank_cone = "80 deg"\n',
+         "weft: the spherical linkage does not close over a whole turn: |cos(rocker_angle = 60 deg)|"
+         " reaches or exceeds |cos(crank_cone = 80 deg)|"),
+        ('[weft]\ncoupler_length = "20 mm"\n',
+         "weft: the planar four-bar does not close over the rocker's swing: crank_length = 150 mm,"
+         " coupler_length = 20 mm, output_length = 121 mm, pivot at (243 mm, 258 mm)"),
         ("[weft]\nassembly = 0\n", "weft: assembly = 0 must be -1 or 1"),
-        (
-            '[damper_1]\nstart_displacement = "20 mm"\n',
-            "damper_1: start_displacement = 20 mm must lie between the stops at free_travel = 15 mm",
-        ),
+        ('[damper_1]\nstart_displacement = "20 mm"\n',
+         "damper_1: start_displacement = 20 mm must lie between the stops at free_travel = 15 mm"),
     ],
-)
+)  # fmt: skip
 def test_values_that_do_not_go_together_are_told_in_one_line(
     capsys: pytest.CaptureFixture[str], text: str, said: str
 ) -> None:

@@ -36,29 +36,21 @@ def test_output_that_nobody_takes_is_no_failed_claim() -> None:
     [
         (["run", "missing.toml"], "missing.toml: cannot be read (No such file or directory)"),
         (["run", "."], ".: cannot be read (Is a directory)"),
-        (
-            ["run", "scene.toml", "--output", "scene.toml/x.h5"],
-            "scene.toml/x.h5: cannot be written (scene.toml is not a directory)",
-        ),
+        (["run", "scene.toml", "--output", "scene.toml/x.h5"],
+         "scene.toml/x.h5: cannot be written (scene.toml is not a directory)"),
         (["run", "scene.toml", "--output", "."], ".: cannot be written (it is a directory)"),
         (["run", "scene.toml", "--output", ""], ".: cannot be written (it is a directory)"),
-        (
-            ["run", "scene.toml", "--output", "/proc/none/x.h5"],
-            "/proc/none/x.h5: cannot be written (No such file or directory)",
-        ),
+        (["run", "scene.toml", "--output", "/proc/none/x.h5"],
+         "/proc/none/x.h5: cannot be written (No such file or directory)"),
         (["build", "MainShft"], "there is no FMU 'MainShft'; did you mean 'MainShaft'?"),
-        (
-            ["build", "MainShaft", "--output", "scene.toml"],
-            "scene.toml/MainShaft.fmu: cannot be written (scene.toml is not a directory)",
-        ),
+        (["build", "MainShaft", "--output", "scene.toml"],
+         "scene.toml/MainShaft.fmu: cannot be written (scene.toml is not a directory)"),
         (["show", "missing.h5"], "missing.h5: there is no such file"),
-        (
-            ["show", "scene.toml"],
-            "scene.toml: cannot be read as a trace (it is not an HDF5 file; loomfmu run writes one)",
-        ),
+        (["show", "scene.toml"],
+         "scene.toml: cannot be read as a trace (it is not an HDF5 file; loomfmu run writes one)"),
         (["show", "other.h5"], "other.h5: not a trace of loomfmu (the dataset /shaft_angle is missing)"),
     ],
-)
+)  # fmt: skip
 def test_a_mistake_in_a_file_name_is_told_in_one_line(
     capsys: pytest.CaptureFixture[str], arguments: list[str], said: str
 ) -> None:

@@ -35,41 +35,27 @@ def test_inverse_problems_return_what_gives_the_speed():
 @pytest.mark.parametrize(
     ("call", "said"),
     [
-        (
-            lambda: loom.clearance_for(1000 * RPM, "WL680-3600"),
-            r"no guide clearance gives 1000 rev/min: .* 779\.\d+ to 545\.\d+",
-        ),
-        (
-            lambda: loom.clearance_for("540 rpm", "WL680-3600"),
-            r"the belt is safe at 540 rev/min with any guide clearance from 0 mm to 0\.8 mm",
-        ),
-        (
-            lambda: loom.clearance_for("600 rpm", "WL680-3600", length_factor=0.8),
-            "length_factor cannot be set",
-        ),
-        (
-            lambda: loom.mass_for("600 rpm", "WL680-3600", mass=0.1),
-            "mass cannot be set: the function solves for the mass",
-        ),
+        (lambda: loom.clearance_for(1000 * RPM, "WL680-3600"),
+         r"no guide clearance gives 1000 rev/min: .* 779\.\d+ to 545\.\d+"),
+        (lambda: loom.clearance_for("540 rpm", "WL680-3600"),
+         r"the belt is safe at 540 rev/min with any guide clearance from 0 mm to 0\.8 mm"),
+        (lambda: loom.clearance_for("600 rpm", "WL680-3600", length_factor=0.8),
+         "length_factor cannot be set"),
+        (lambda: loom.mass_for("600 rpm", "WL680-3600", mass=0.1),
+         "mass cannot be set: the function solves for the mass"),
         (lambda: loom.mass_for("-650 rpm", "WL680-3600"), "speed = -650 rev/min is outside"),
-        (
-            lambda: loom.mass_for("9000 rpm", "WL680-3600"),
-            "no head mass gives 9000 rev/min: between 1 g and 10000",
-        ),
+        (lambda: loom.mass_for("9000 rpm", "WL680-3600"),
+         "no head mass gives 9000 rev/min: between 1 g and 10000"),
         (lambda: loom.mass_for("600 rpm", "WL680-3600", mas=0.1), "mas is unknown; did you mean 'mass'?"),
-        (
-            lambda: loom.safe_speed("WL680-3600", clearance="0.5 mm", length_factor=0.8),
-            "give either clearance or length_factor",
-        ),
-        (
-            lambda: loom.safe_speed("WL680-3600", tension=5000.0),
-            "WL680-3600: a weft tension of 5000 N buckles the belt at any speed",
-        ),
+        (lambda: loom.safe_speed("WL680-3600", clearance="0.5 mm", length_factor=0.8),
+         "give either clearance or length_factor"),
+        (lambda: loom.safe_speed("WL680-3600", tension=5000.0),
+         "WL680-3600: a weft tension of 5000 N buckles the belt at any speed"),
         (lambda: loom.safe_speed("WL680-360"), "there is no machine 'WL680-360'; did you mean 'WL680-3600'"),
         *((lambda name=name: loom.safe_speed(name), "there is no machine") for name in (3, None, ["a"])),
         *((lambda name=name: loom.safe_speed("WL680-3600", name), "there is no head") for name in (3, ["a"])),
     ],
-)
+)  # fmt: skip
 def test_what_cannot_be_had_is_refused(call, said):
     with pytest.raises(LoomfmuError, match=f"^{said}"):
         call()

@@ -308,22 +308,12 @@ def test_a_mechanism_without_the_number_of_its_source_is_named_too() -> None:
 @pytest.mark.parametrize(
     ("text", "sink", "source", "name", "wires"),
     [
-        (
-            '[my_dobby]\ncomponent = "DobbyDrive"\n[heald_1]\n',
-            "heald_1.rotor_ratio",
-            "dobby.rotor_ratio",
-            "my_dobby",
-            ("rotor_ratio", "lift_slope", "rotor_angle"),
-        ),
-        (
-            '[dobby]\n[left]\ncomponent = "HealdFrame"\n[damper_1]\n',
-            "damper_1.lift",
-            "heald_1.lift",
-            "left",
-            ("lift", "velocity"),
-        ),
+        ('[my_dobby]\ncomponent = "DobbyDrive"\n[heald_1]\n', "heald_1.rotor_ratio", "dobby.rotor_ratio",
+         "my_dobby", ("rotor_ratio", "lift_slope", "rotor_angle")),
+        ('[dobby]\n[left]\ncomponent = "HealdFrame"\n[damper_1]\n', "damper_1.lift", "heald_1.lift", "left",
+         ("lift", "velocity")),
     ],
-)
+)  # fmt: skip
 def test_a_source_of_another_name_is_named(
     text: str, sink: str, source: str, name: str, wires: tuple[str, ...]
 ) -> None:

@@ -149,10 +149,8 @@ GRID = '[grid]\n"shaft.speed" = ["500 rpm", "600 rpm"]\n"belt.guide_clearance" =
 
 
 IN_GRID = [
-    (
-        '"belt.guide_clearence" = [1]',
-        "grid: belt.guide_clearence is unknown; did you mean 'guide_clearance'?",
-    ),
+    ('"belt.guide_clearence" = [1]',
+     "grid: belt.guide_clearence is unknown; did you mean 'guide_clearance'?"),
     ('"bolt.guide_clearance" = [1]', "the scene has no instance 'bolt'; did you mean 'belt'?"),
     ('machin = ["WL680-3600"]', "'machin' cannot be set; did you mean 'machine'?"),
     ('machine = ["WL680-3700"]', "there is no machine 'WL680-3700'; did you mean 'WL680-3"),
@@ -165,29 +163,19 @@ IN_GRID = [
     ('"shaft.speed" = []', "grid.shaft.speed must name at least one value"),
     ('"shaft.speed" = ["500 rpm", "500 r/min"]', "grid.shaft.speed: 500 rev/min appears twice"),
     ('"shaft.speed" = [50.0]\nshaft.speed = [60.0]', "grid.shaft.speed appears twice"),
-    (
-        '"shaft.speed" = [50.0]\n[sample]\ncount = 2\nseed = 1\n"shaft.speed" = [1, 2]',
-        "sample.shaft.speed sets shaft.speed, which grid.shaft.speed already sets",
-    ),
-    (
-        '"shaft.speed" = [50.0]\n[set]\n"shaft.speed" = 50.0\n',
-        "grid.shaft.speed sets shaft.speed, which set already sets",
-    ),
-    (
-        'machine = ["WL680-3600"]\n"belt.machine" = ["WL680-3600"]',
-        "grid.belt.machine sets belt.machine, which grid.machine already sets",
-    ),
+    ('"shaft.speed" = [50.0]\n[sample]\ncount = 2\nseed = 1\n"shaft.speed" = [1, 2]',
+     "sample.shaft.speed sets shaft.speed, which grid.shaft.speed already sets"),
+    ('"shaft.speed" = [50.0]\n[set]\n"shaft.speed" = 50.0\n',
+     "grid.shaft.speed sets shaft.speed, which set already sets"),
+    ('machine = ["WL680-3600"]\n"belt.machine" = ["WL680-3600"]',
+     "grid.belt.machine sets belt.machine, which grid.machine already sets"),
     ('"shaft.speed" = { from = 50.0, to = 60.0 }', "grid.shaft.speed.count is missing"),
     ('"shaft.speed" = { from = 50.0, cuont = 3 }', "cuont is unknown; did you mean 'count'"),
     ('"shaft.speed" = { from = 50.0, count = 3 }', "grid.shaft.speed has no 'to'"),
-    (
-        '"shaft.speed" = { from = "600 rpm", to = "500 rpm", count = 3 }',
-        "600 rev/min is not below 500 rev/min",
-    ),
-    (
-        '"shaft.speed" = { from = -1.0, to = 5.0, count = 3, logarithmic = true }',
-        "above 0 can be logarithmic",
-    ),
+    ('"shaft.speed" = { from = "600 rpm", to = "500 rpm", count = 3 }',
+     "600 rev/min is not below 500 rev/min"),
+    ('"shaft.speed" = { from = -1.0, to = 5.0, count = 3, logarithmic = true }',
+     "above 0 can be logarithmic"),
     ('machine = { from = "a", to = "b", count = 3 }', "grid.machine is not a number: list"),
     ("steps_per_revolution = [90.5]", "steps_per_revolution = 90.5 is not a whole number"),
     (
@@ -197,7 +185,7 @@ IN_GRID = [
         "1000000000 combinations; the limit is 10000000",
     ),
     ("revolutions = [1, 0]", "revolutions = 0 is outside [1e-09, 1e+09]"),
-]
+]  # fmt: skip
 ELSEWHERE = [
     ("", "nothing varies"),
     ("gird = 1", "gird is unknown; did you mean 'grid'?"),
@@ -213,26 +201,18 @@ ELSEWHERE = [
 IN_MAP = [
     ('x = "shaft.sped"\nvalue = "claim_1.worst"', "map.x = 'shaft.sped' is not an axis; did you mean"),
     ('x = "shaft.speed"', "map has no 'value'"),
-    (
-        'x = "shaft.speed"\nvalue = "belt.lowest_sped_limit"',
-        "is not a column of results; did you mean 'belt.low",
-    ),
+    ('x = "shaft.speed"\nvalue = "belt.lowest_sped_limit"',
+     "is not a column of results; did you mean 'belt.low"),
     ('x = "shaft.speed"\ny = "shaft.speed"\nvalue = "claim_1.worst"', "map.x and map.y are both shaft.speed"),
-    (
-        'x = "shaft.speed"\ny = "belt.guide_clearance"\nvalue = "claim_1.worst"\n'
-        "[grid.weft]\nwheel_diameter = [0.3, 0.4]",
-        "map: weft.wheel_diameter varies too; pick one of its values in [map.at]",
-    ),
-    (
-        'x = "shaft.speed"\nvalue = "claim_1.worst"\nat = { "belt.guide_clearance" = "0.3 mm" }',
-        "map.at.belt.guide_clearance = 0.3 mm is not on its axis: 0.2 mm, 1 mm",
-    ),
-    (
-        'x = "shaft.speed"\ny = "belt.guide_clearance"\nvalue = "claim_1.worst"\n'
-        '[sample]\ncount = 2\nseed = 1\n"weft.wheel_diameter" = [0.3, 0.4]',
-        "map: weft.wheel_diameter is sampled, so many rows share one point",
-    ),
-]
+    ('x = "shaft.speed"\ny = "belt.guide_clearance"\nvalue = "claim_1.worst"\n'
+     "[grid.weft]\nwheel_diameter = [0.3, 0.4]",
+     "map: weft.wheel_diameter varies too; pick one of its values in [map.at]"),
+    ('x = "shaft.speed"\nvalue = "claim_1.worst"\nat = { "belt.guide_clearance" = "0.3 mm" }',
+     "map.at.belt.guide_clearance = 0.3 mm is not on its axis: 0.2 mm, 1 mm"),
+    ('x = "shaft.speed"\ny = "belt.guide_clearance"\nvalue = "claim_1.worst"\n'
+     '[sample]\ncount = 2\nseed = 1\n"weft.wheel_diameter" = [0.3, 0.4]',
+     "map: weft.wheel_diameter is sampled, so many rows share one point"),
+]  # fmt: skip
 
 
 IN_HEAD = [

@@ -105,30 +105,22 @@ SPEEDS = '"shaft.speed" = ["500 rpm", "600 rpm"]'
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        (
-            f"method = 'sobel'\nsamples = 8{RANGES}",
-            "sensitivity.method = 'sobel' is unknown; did you mean 'sobol'?",
-        ),
+        (f"method = 'sobel'\nsamples = 8{RANGES}",
+         "sensitivity.method = 'sobel' is unknown; did you mean 'sobol'?"),
         (f"samples = 100{RANGES}", "sensitivity.samples = 100 must be a power of 2 for sobol, such as 128"),
         (f"method = 'morris'{RANGES}", "sensitivity.samples is missing"),
-        (
-            f"samples = 8\noutputs = ['claim_7.distance']{RANGES}",
-            "'claim_7.distance' is not a column of results",
-        ),
+        (f"samples = 8\noutputs = ['claim_7.distance']{RANGES}",
+         "'claim_7.distance' is not a column of results"),
         (f"samples = 8\noutputs = []{RANGES}", "is not a list such as"),
         (f"samples = 8\nmethods = 'sobol'{RANGES}", "'methods' cannot be set"),
         (f"samples = 8\n{SPEEDS}", "sensitivity needs two ranges or more"),
-        (
-            f"samples = 8{RANGES}[grid]\n'belt.guide_clearance' = ['0.2 mm']",
-            "[sensitivity] chooses the rows itself; leave out [grid]",
-        ),
-        (
-            'samples = 8\n"shaft.speed" = ["600 rpm", "500 rpm"]',
-            "sensitivity.shaft.speed: 600 rev/min is not below 500 rev/min",
-        ),
+        (f"samples = 8{RANGES}[grid]\n'belt.guide_clearance' = ['0.2 mm']",
+         "[sensitivity] chooses the rows itself; leave out [grid]"),
+        ('samples = 8\n"shaft.speed" = ["600 rpm", "500 rpm"]',
+         "sensitivity.shaft.speed: 600 rev/min is not below 500 rev/min"),
         ('samples = 8\n"dobby.law" = ["uniform", "table"]', "has no instance 'dobby'"),
     ],
-)
+)  # fmt: skip
 def test_what_is_refused(text: str, said: str) -> None:
     with pytest.raises(LoomfmuError) as caught:
         sweep(sweep_file(f"[sensitivity]\n{text}"))

@@ -128,23 +128,15 @@ WHOLE_TURN = "is empty; a whole revolution is [0 deg, 360 deg]"
                 ([350.0, 10.0], 'has 350.0 rad, more than a revolution; did you mean "350.0 deg"?'),
             )
         ),
-        (
-            {"kind": "dwell_contains", "heald": "heald_1", "angles": []},
-            "claim 'dwell_contains': angles = [] must be a list of shaft angles, such as [\"140 deg\"]",
-        ),
-        (
-            {"kind": "dwell", "heald": "heald_1", "at_least": 1, "tolerance": 0.5},
-            "claim 'dwell': tolerance = 0.5 is outside (0, 0.5) of the stroke",
-        ),
+        ({"kind": "dwell_contains", "heald": "heald_1", "angles": []},
+         "claim 'dwell_contains': angles = [] must be a list of shaft angles, such as [\"140 deg\"]"),
+        ({"kind": "dwell", "heald": "heald_1", "at_least": 1, "tolerance": 0.5},
+         "claim 'dwell': tolerance = 0.5 is outside (0, 0.5) of the stroke"),
         ({"kind": "dwell", "heald": 5, "at_least": 1}, "claim 'dwell': heald = 5 is not a name in quotes"),
-        (
-            {"kind": "peak_load", "damper": "damper_1", "at_most": "1 mm"},
-            "claim 'peak_load': at_most: '1 mm' is in mm, which does not fit N",
-        ),
-        (
-            {"kind": "dwell", "heald": "heald_9", "at_least": 1},
-            "loom_0.h5: signal 'heald_9.lift' is not recorded; did you mean 'heald_2.lift'?",
-        ),
+        ({"kind": "peak_load", "damper": "damper_1", "at_most": "1 mm"},
+         "claim 'peak_load': at_most: '1 mm' is in mm, which does not fit N"),
+        ({"kind": "dwell", "heald": "heald_9", "at_least": 1},
+         "loom_0.h5: signal 'heald_9.lift' is not recorded; did you mean 'heald_2.lift'?"),
         *(
             (ROOM | {"healds": healds}, f"claim 'rapier_in_open_shed': healds = {healds!r} {said}")
             for healds, said in (
@@ -153,7 +145,7 @@ WHOLE_TURN = "is empty; a whole revolution is [0 deg, 360 deg]"
             )
         ),
     ],
-)
+)  # fmt: skip
 def test_a_claim_that_cannot_be_judged_is_refused_with_its_name(
     looms: Looms, given: dict[str, Any], said: str
 ) -> None:

@@ -264,20 +264,14 @@ def test_the_value_of_an_element_prevails_over_that_of_its_array(tmp_path: Path,
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        (
-            '[wires]\n"one.u" = "two.y"\n"one.u[1,2]" = "two.velocity"\n',
-            "one.u_1_2 is wired twice, to two.y_1_2 and two.velocity; keep one wire",
-        ),
-        (
-            '[wires]\n"one.u_1_2" = "two.y[1,1]"\n"one.u[1,2]" = "two.velocity"\n',
-            "wires: 'one.u[1,2]' is one.u_1_2, which has a wire; keep one of them",
-        ),
-        (
-            '[inputs]\n"one.u_1_2" = [[0, 1]]\n"one.u[1,2]" = [[0, 2]]\n',
-            "inputs.one.u[1,2] is a second table for one.u_1_2; keep one of them",
-        ),
+        ('[wires]\n"one.u" = "two.y"\n"one.u[1,2]" = "two.velocity"\n',
+         "one.u_1_2 is wired twice, to two.y_1_2 and two.velocity; keep one wire"),
+        ('[wires]\n"one.u_1_2" = "two.y[1,1]"\n"one.u[1,2]" = "two.velocity"\n',
+         "wires: 'one.u[1,2]' is one.u_1_2, which has a wire; keep one of them"),
+        ('[inputs]\n"one.u_1_2" = [[0, 1]]\n"one.u[1,2]" = [[0, 2]]\n',
+         "inputs.one.u[1,2] is a second table for one.u_1_2; keep one of them"),
     ],
-)
+)  # fmt: skip
 def test_an_input_has_one_source_by_whatever_name(tmp_path: Path, text: str, said: str) -> None:
     motor3(tmp_path, description=ARRAYS)
     assert refused(tmp_path, TABLE + '[two]\nfmu = "Motor3.fmu"\n' + text) == said

@@ -214,18 +214,12 @@ def test_a_loop_is_iterated_from_saved_states(tmp_path: Path, fmi: int) -> None:
     ("tables", "defines", "said"),
     [
         ("", ["-DFAILS_AT=0.5"], r"it at 0\.5 s: fmi2GetDerivatives returned fmi2Error: no reason given"),
-        (
-            "",
-            ["-DFAILS_AT=0.5", "-DRETURNED=OK"],
-            r"it at 0\.5 s: .* derivatives at 0\.50\d* s are not finite",
-        ),
-        (
-            "tolerance = 1e-15",
-            [],
-            "it.tolerance = 1e-15 must be at least 1e-12 for an FMU for model exchange",
-        ),
+        ("", ["-DFAILS_AT=0.5", "-DRETURNED=OK"],
+         r"it at 0\.5 s: .* derivatives at 0\.50\d* s are not finite"),
+        ("tolerance = 1e-15", [],
+         "it.tolerance = 1e-15 must be at least 1e-12 for an FMU for model exchange"),
     ],
-)
+)  # fmt: skip
 def test_failures_have_one_line(tmp_path: Path, tables: str, defines: list[str], said: str) -> None:
     with pytest.raises(LoomfmuError, match=said):
         solved(exchanged(tmp_path, "OSCILLATOR", 2, *defines), tables)

@@ -146,27 +146,18 @@ def test_values_that_a_scene_and_set_give(text: str, given: dict[str, Any], valu
 @pytest.mark.parametrize(
     ("lines", "less", "more"),
     [
-        (
-            wires(belt__yarn_tension="damper_1.transmitted_force"),
-            (),
-            "damper_1.transmitted_force -> belt.yarn_tension",
-        ),
-        (
-            wires(damper_2__lift="heald_1.lift"),
-            "heald_2.lift -> damper_2.lift",
-            "heald_1.lift -> damper_2.lift",
-        ),
-        (
-            'damper_2 = {lift = "heald_1.lift"}',
-            "heald_2.lift -> damper_2.lift",
-            "heald_1.lift -> damper_2.lift",
-        ),
+        (wires(belt__yarn_tension="damper_1.transmitted_force"), (),
+         "damper_1.transmitted_force -> belt.yarn_tension"),
+        (wires(damper_2__lift="heald_1.lift"), "heald_2.lift -> damper_2.lift",
+         "heald_1.lift -> damper_2.lift"),
+        ('damper_2 = {lift = "heald_1.lift"}', "heald_2.lift -> damper_2.lift",
+         "heald_1.lift -> damper_2.lift"),
         *(
             (cut, "weft.travel -> belt.travel", ())
             for cut in ('"belt.travel" = false', "belt.travel = false", "belt = {travel = false}")
         ),
     ],
-)
+)  # fmt: skip
 def test_a_wire_can_be_added_replaced_and_cut(lines: str, less: Any, more: Any) -> None:
     less, more = ({each} if each else set() for each in (less, more))
     assert wired(LOOM, "[wires]\n", lines) == wired(LOOM) - less | more
@@ -322,16 +313,10 @@ DOUBT = 'is read as 480 rad/s = 4583.662 rev/min; write "480 rev/min" if that is
     [
         ("[shaft]\nspeed = 480\n", {}, f"shaft.speed = 480 {DOUBT}"),
         ("", {"shaft__speed": "480"}, f"shaft.speed = 480 {DOUBT}"),
-        (
-            "",
-            {"belt__head_mass": 95},
-            'belt.head_mass = 95 is read as 95 kg = 95000 g; write "95 g" if that is meant',
-        ),
-        (
-            '[inputs]\n"weft.shaft_velocity" = [[0, 480]]\n[wires]\n"weft.shaft_velocity" = false\n',
-            {},
-            f"inputs.weft.shaft_velocity = 480 {DOUBT}",
-        ),
+        ("", {"belt__head_mass": 95},
+         'belt.head_mass = 95 is read as 95 kg = 95000 g; write "95 g" if that is meant'),
+        ('[inputs]\n"weft.shaft_velocity" = [[0, 480]]\n[wires]\n"weft.shaft_velocity" = false\n', {},
+         f"inputs.weft.shaft_velocity = 480 {DOUBT}"),
         ("[shaft]\nspeed = 480\n", {"shaft__speed": "480 rpm"}, ""),  # what is set anew is doubted anew
         # ordinary numbers are not doubted
         *(
@@ -347,7 +332,7 @@ DOUBT = 'is read as 480 rad/s = 4583.662 rev/min; write "480 rev/min" if that is
             for value in values
         ),
     ],
-)
+)  # fmt: skip
 def test_a_number_that_was_meant_in_another_unit_is_doubted(
     more: str, given: dict[str, Any], note: str
 ) -> None:
@@ -363,24 +348,17 @@ TOO_HIGH = 'head_height = 18 is read as 18 m = 18000 mm; write "18 mm" if that i
 @pytest.mark.parametrize(
     ("claim", "note"),
     [
-        (
-            DEFLECTION | {"bound": 2},
-            "claim 'below' of belt.deflection: bound = 2 is read as 2 m = 2000 mm;"
-            ' write "2 mm" if that is meant',
-        ),
-        (
-            {"kind": "dwell", "heald": "heald_1", "at_least": 85},
-            "claim 'dwell': at_least = 85 is read as 85 rad = 4870.141 deg;"
-            ' write "85 deg" if that is meant',
-        ),
+        (DEFLECTION | {"bound": 2}, "claim 'below' of belt.deflection: bound = 2 is read as 2 m = 2000 mm;"
+         ' write "2 mm" if that is meant'),
+        ({"kind": "dwell", "heald": "heald_1", "at_least": 85},
+         "claim 'dwell': at_least = 85 is read as 85 rad = 4870.141 deg;"
+         ' write "85 deg" if that is meant'),
         (ROOM, f"claim 'rapier_in_open_shed': {TOO_HIGH}"),
         (ROOM | {"name": "the head fits"}, f"claim 'the head fits': {TOO_HIGH}"),
-        (
-            DEFLECTION | {"bound": "2 mm", "window": ["210 deg", "150 deg"]},
-            "claim 'below': window = [210 deg, 150 deg] covers 300 deg, through 360 deg;"
-            ' write ["150 deg", "210 deg"] for the other part of the revolution, or ["-150 deg", "150 deg"]'
-            " if this one is meant",
-        ),
+        (DEFLECTION | {"bound": "2 mm", "window": ["210 deg", "150 deg"]},
+         "claim 'below': window = [210 deg, 150 deg] covers 300 deg, through 360 deg;"
+         ' write ["150 deg", "210 deg"] for the other part of the revolution, or ["-150 deg", "150 deg"]'
+         " if this one is meant"),
         # ordinary ones are not doubted
         (DEFLECTION | {"bound": 0.002}, ""),
         (DEFLECTION | {"bound": "2 m"}, ""),
@@ -390,7 +368,7 @@ TOO_HIGH = 'head_height = 18 is read as 18 m = 18000 mm; write "18 mm" if that i
         (MARGIN | {"window": ["-150 deg", "150 deg"]}, ""),
         ({"kind": "above", "signal": "belt.lowest_speed_limit", "bound": "shaft.speed"}, ""),
     ],
-)
+)  # fmt: skip
 def test_claims_that_were_probably_meant_otherwise_are_doubted(claim: dict[str, Any], note: str) -> None:
     scene = replace(parsed(LOOM, revolutions=2), claims=[claim])
     notes = (note,) if note else ()

@@ -285,10 +285,8 @@ BOTH = f"{HEADING},belt.free_length [mm]"
     ("how", "said"),
     [
         ({"vary": "belt.head_mass=0.1kg..0.2kg"}, "belt.head_mass changes none of the measured signals"),
-        (
-            {"vary": ["belt.bending_stiffness=0.1..0.4", FACTOR]},
-            "cannot tell belt.bending_stiffness and belt.prescribed_length_factor apart",
-        ),
+        ({"vary": ["belt.bending_stiffness=0.1..0.4", FACTOR]},
+         "cannot tell belt.bending_stiffness and belt.prescribed_length_factor apart"),
         ({"vary": "belt.prescribed_length_factor=2..0.5"}, "is empty"),
         ({"vary": [FACTOR, FACTOR]}, "is varied twice"),
         ({"vary": "belt.length_faktor=0.5..2"}, "length_factor"),
@@ -297,21 +295,17 @@ BOTH = f"{HEADING},belt.free_length [mm]"
         ({"offset": "-2deg..2deg"}, "which does not fit s; the data are over time"),
         ({"offset": "-2..2"}, "offset = '-2' has no unit"),
         ({"offset": "2ms..-2ms"}, "offset: the range from 2 ms to -2 ms is empty"),
-        (
-            {"offset": "-2s..2s"},
-            r"measured from 0\.3 to 0\.9 s, with an offset of -2 s, but the run goes from 0",
-        ),
+        ({"offset": "-2s..2s"},
+         r"measured from 0\.3 to 0\.9 s, with an offset of -2 s, but the run goes from 0"),
         ({"loss": "hubert"}, "loss = 'hubert' is not one of .*; did you mean 'huber'?"),
         ({"loss": "huber"}, "has 9 values, but loss = huber with 1 parameter takes at least 11"),
         ({"rows": [(0.4, 20.0)]}, "1 value cannot determine 1 parameter with"),
-        (
-            {"rows": [(0.4, 20.0), (1.4, 5.0)]},
-            r"measured from 0\.4 to 1\.4 s, but the run goes from 0 to 1 s",
-        ),
+        ({"rows": [(0.4, 20.0), (1.4, 5.0)]},
+         r"measured from 0\.4 to 1\.4 s, but the run goes from 0 to 1 s"),
         ({"rows": FEW, "heading": BOTH}, r"belt\.free_length has 8 values, but .* at least 11"),
         ({"heading": HEADING.replace("time [s]", "shaft_angle [deg]")}, "no shaft turns in this scene"),
     ],
-)
+)  # fmt: skip
 def test_what_cannot_be_fitted_is_refused(how: dict[str, Any], said: str) -> None:
     files = written(how.pop("rows", NINE), how.pop("heading", HEADING))
     with pytest.raises(LoomfmuError, match=said):

@@ -37,24 +37,17 @@ def best(
         # a corner of a claim and the end of a range
         (lambda x: -x[0], lambda x: [0.5 - x[0] * (1.0 + x[1] ** 2)], [0.2, 0.7], -0.5),
         # a curved claim alone
-        (
-            lambda x: -(x[0] + 2.0 * x[1]),
-            lambda x: [0.25 - np.sum((x - 0.5) ** 2)],
-            [0.5, 0.5],
-            -1.5 - 0.5 * math.sqrt(5.0),
-        ),
+        (lambda x: -(x[0] + 2.0 * x[1]), lambda x: [0.25 - np.sum((x - 0.5) ** 2)], [0.5, 0.5],
+         -1.5 - 0.5 * math.sqrt(5.0)),
         # kinks: in the goal, and in a claim, as worst values have them
         (lambda x: (x[0] - 0.3) ** 2 + max(x[1], 1.0 - x[1]), lambda x: [], [0.9, 0.1], 0.5),
-        (
-            lambda x: -x[0],
-            lambda x: [min(0.9 - x[0] - 0.2 * abs(x[1] - 0.5), 1.0 - x[0] * (1.0 + abs(x[2] - 0.2)))],
-            [0.1, 0.1, 0.9],
-            -0.9,
-        ),
+        (lambda x: -x[0],
+         lambda x: [min(0.9 - x[0] - 0.2 * abs(x[1] - 0.5), 1.0 - x[0] * (1.0 + abs(x[2] - 0.2)))],
+         [0.1, 0.1, 0.9], -0.9),
         # a claim that jumps
         (lambda x: -x[0], lambda x: [-1.0 if x[0] > 0.618 else 0.0], [0.1, 0.1], -0.618),
     ],
-)
+)  # fmt: skip
 def test_the_best_point_is_found(
     goal: Callable[[Floats], float],
     room: Callable[[Floats], Sequence[float]],

@@ -63,36 +63,21 @@ def test_a_certificate_is_confirmed(told: dict[str, Any], tmp_path: Path) -> Non
 
 
 FORGED = [  # what is done to a certificate, and what is said of it
-    (
-        'told["scene"] = told["scene"].replace("revolutions = 2", "revolutions = 0.1", 1)\n'
-        'told["claims"] = [{"name": "transfer", "conditions": [[], [], []]}]',
-        "never reaches 140 deg",
-    ),
-    (
-        f'told["scene"] = {WITHOUT_FRAMES!r}\ntold["claims"] = [{{"name": "shed", "conditions": []}}]',
-        "no heald frame",
-    ),
+    ('told["scene"] = told["scene"].replace("revolutions = 2", "revolutions = 0.1", 1)\n'
+     'told["claims"] = [{"name": "transfer", "conditions": [[], [], []]}]', "never reaches 140 deg"),
+    (f'told["scene"] = {WITHOUT_FRAMES!r}\ntold["claims"] = [{{"name": "shed", "conditions": []}}]',
+     "no heald frame"),
     ('told["over"]["shaft.start_angle"] = ["0x0p0", (1e-3).hex()]', "all shaft angles are proven"),
     ('told["over"]["revolutions"] = [(2.0).hex(), (100.0).hex()]', "revolutions cannot vary in a proof"),
-    (
-        'told["over"]["heald.stroke"] = [(0.097).hex(), (0.099).hex()]\n'
-        'told["overrides"] = {"heald_2.stroke": "150 mm"}',
-        "heald_2.stroke keeps a value of its own",
-    ),
-    (
-        'told["scene"] = told["scene"].replace("revolutions = 2", "revolutions = 1e7", 1)',
-        "more than 1000 revolutions",
-    ),
+    ('told["over"]["heald.stroke"] = [(0.097).hex(), (0.099).hex()]\n'
+     'told["overrides"] = {"heald_2.stroke": "150 mm"}', "heald_2.stroke keeps a value of its own"),
+    ('told["scene"] = told["scene"].replace("revolutions = 2", "revolutions = 1e7", 1)',
+     "more than 1000 revolutions"),
     ('told["texts"] = {"a": "", "a/b": ""}', "is not a certificate"),
-    (
-        'told["over"]["heald_2.stroke"] = [(0.01).hex(), (0.9).hex()]\n'
-        'told["over"]["heald.stroke"] = [(0.098).hex(), (0.0981).hex()]',
-        "varies twice",
-    ),
-    (
-        """told["scene"] += '[wires]\\n"belt.velocity" = false\\n'""",
-        "belt.velocity is constant, but belt.travel is wired",
-    ),
+    ('told["over"]["heald_2.stroke"] = [(0.01).hex(), (0.9).hex()]\n'
+     'told["over"]["heald.stroke"] = [(0.098).hex(), (0.0981).hex()]', "varies twice"),
+    ("""told["scene"] += '[wires]\\n"belt.velocity" = false\\n'""",
+     "belt.velocity is constant, but belt.travel is wired"),
     (f'told["scene"] += {claim("lowest_margin", name="margin", bound=0.99)!r}', "under one name"),
     ('told["texts"]["mine.py"] = "print(1)"', "only the package's own mechanisms"),
     ('told["scene"] += "[other]\\nfmu = \'/etc/other.fmu\'\\n"', "only the package's own mechanisms"),
@@ -110,13 +95,11 @@ FORGED = [  # what is done to a certificate, and what is said of it
     ('told["scene"] = told["scene"].replace("bound = 0.1", "bound = 0.117")', "is not confirmed"),
     ('told["overrides"] = {"belt.head_mass": "130 g"}', "is not confirmed"),
     ('told["equations"]["BeltMonitor"] = "0" * 64', "equations of BeltMonitor are not those"),
-    (
-        'told["scene"] = told["scene"].replace("80 deg", "90 deg")\ndel told["claims"][0]',
-        "dwell is not confirmed",
-    ),
+    ('told["scene"] = told["scene"].replace("80 deg", "90 deg")\ndel told["claims"][0]',
+     "dwell is not confirmed"),
     ('told["claims"][0]["conditions"] = []', "0 conditions, not 1"),
     ('del told["claims"][:2]\ntold["claims"][0]["conditions"][0].pop()', "ranges of the shaft angle"),
-]
+]  # fmt: skip
 
 
 @pytest.mark.parametrize(("forgery", "message"), FORGED)

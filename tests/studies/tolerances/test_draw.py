@@ -113,10 +113,8 @@ def test_a_worst_case_needs_ends() -> None:
 @pytest.mark.parametrize(
     ("given", "why"),
     [
-        (
-            '{ normal = ["0.35 mm", "0.05 mm"], uniform = [0, 1] }',
-            "must be either normal, perhaps within two",
-        ),
+        ('{ normal = ["0.35 mm", "0.05 mm"], uniform = [0, 1] }',
+         "must be either normal, perhaps within two"),
         ('{ measured = "x.csv", within = [0, 1] }', "must be either normal, perhaps within two ends, or"),
         ('{ normal = ["0.35 mm", "0.05 mm"], withn = [0, 1] }', "has no 'withn'; did you mean 'within'?"),
         ('{ normal = "0.35 mm" }', "normal = '0.35 mm' must be a mean and a standard deviation such as"),
@@ -124,23 +122,19 @@ def test_a_worst_case_needs_ends() -> None:
         ('{ uniform = ["0.5 mm", "0.2 mm"] }', "the range from 0.5 mm to 0.2 mm is empty"),
         ('{ normal = ["0.35 mm", "0 mm"] }', "the standard deviation 0 mm must be positive"),
         ('{ normal = ["0.35 mm", "3 g"] }', "'3 g' is in g, which does not fit m"),
-        (
-            '{ normal = ["0.9 mm", "1 mm"], within = ["0.2 mm", "0.5 mm"] }',
-            "the mean 0.9 mm is not within 0.2",
-        ),
+        ('{ normal = ["0.9 mm", "1 mm"], within = ["0.2 mm", "0.5 mm"] }',
+         "the mean 0.9 mm is not within 0.2"),
         ('{ measured = "none.csv" }', "none.csv: cannot be read"),
         ('{ measured = "other.csv" }', "it has belt.head_mass, but none is called belt.guide_clearance"),
-        (
-            '{ measured = "plain.csv" }',
-            "'belt.guide_clearance' has no unit; write it in brackets, such as 'belt.guide_clearance [mm]'",
-        ),
+        ('{ measured = "plain.csv" }',
+         "'belt.guide_clearance' has no unit; write it in brackets, such as 'belt.guide_clearance [mm]'"),
         ('{ norml = ["0.35 mm", "0.05 mm"] }', "belt.guide_clearance has no 'norml'; did you mean 'normal'?"),
         ('{ measured = "grams.csv" }', "is in 'g', which does not fit m"),
         ('{ measured = "gap.csv" }', "belt.guide_clearance has no value in some row"),
         ('{ measured = "negative.csv" }', "belt.guide_clearance = -0.3 mm is outside"),
         ('{ normal = ["0.35 mm", "0.3 mm"] }', "loom 10 of 20, with belt.guide_clearance = -"),
     ],
-)
+)  # fmt: skip
 def test_what_is_not_a_distribution_is_refused_in_one_line(tmp_path: Path, given: str, why: str) -> None:
     for name, heading, row in (
         ("other", "belt.head_mass [g]", "105"),
