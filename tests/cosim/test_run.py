@@ -11,43 +11,23 @@ import pytest
 from foreign_motors import FMI3, description2, library, motor2, motor3, packed
 from motor_scenes import LENGTH, MOTOR, ran
 
-from loomfmu import Trace, evaluate, run
+from loomfmu import Trace, run
 from loomfmu.cosim.recorded import usual_path
 from loomfmu.cosim.scenes import scene as scenes
 
 CLAIM = '[[claims]]\nkind = "below"\nsignal = "motor.flange_w"\nbound = 100.0\n'
 
 
-@pytest.mark.parametrize("isolated", ["true", "false"])
-def test_an_fmu_that_crashes_at_its_end_takes_no_verdict_with_it(tmp_path: Path, isolated: str) -> None:
+def test_an_fmu_that_crashes_at_its_end_takes_no_trace_with_it(tmp_path: Path) -> None:
     motor2(tmp_path, defines=("CRASHES=1",))
-    (tmp_path / "motor.toml").write_text(f"isolated = {isolated}\n" + MOTOR + CLAIM)
+    (tmp_path / "motor.toml").write_text("isolated = false\n" + MOTOR + CLAIM)
     command = [sys.executable, "-m", "loomfmu.cli", "run", "motor.toml", "--output", "out/motor.h5"]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120)
-    if isolated == "true":
-        assert done.returncode == 0
-    else:
-        assert done.returncode not in (0, 1)  # the process is gone
+    assert done.returncode not in (0, 1)  # the process is gone
     assert [path.name for path in (tmp_path / "out").iterdir()] == ["motor.h5"]
     with Trace(tmp_path / "out" / "motor.h5") as trace:
         assert (trace.status, trace.rows) == ("complete", 201)
-        assert [each.word for each in trace.verdicts] == ["holds" if isolated == "true" else "undecided"]
-
-
-@pytest.mark.parametrize("when", [1, 2])
-def test_an_fmu_that_changes_the_working_directory_moves_nothing(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, when: int
-) -> None:
-    motor2(tmp_path, defines=(f"MOVES={when}",))
-    monkeypatch.chdir(tmp_path)
-    scene = scenes.parse("isolated = false\n" + MOTOR + CLAIM, "motor")
-    result = run(scene, output="out/motor.h5")
-    assert result.path == Path("out/motor.h5")
-    assert result.trace.rows == 201
-    assert [path.name for path in (tmp_path / "out").iterdir()] == ["motor.h5"]
-    assert Path.cwd() == tmp_path
-    assert evaluate(scene).claims[0].worst == result.claims[0].worst
-    assert Path.cwd() == tmp_path
+        assert [each.word for each in trace.verdicts] == ["undecided"]
 
 
 def test_an_fmu_none_of_whose_outputs_can_be_recorded_is_named(tmp_path: Path) -> None:

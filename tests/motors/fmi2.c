@@ -16,9 +16,6 @@
 #ifndef CRASHES /* whether it crashes when it is terminated */
 #define CRASHES 0
 #endif
-#ifndef MOVES /* whether it changes the working directory of the process: 1 at its making, 2 at each step */
-#define MOVES 0
-#endif
 #ifndef ENDS_AT /* s: when it ends the simulation */
 #define ENDS_AT 1.0e300
 #endif
@@ -44,7 +41,6 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
         functions->logger(functions->componentEnvironment, name, fmi2Error, "error", "%s: %d alive", guid, alive);
         return NULL;
     }
-    if (MOVES == 1 && chdir("/")) abort();
     instance = functions->allocateMemory(1, sizeof(Instance));
     motor_defaults(&instance->motor);
     instance->functions = functions;
@@ -154,7 +150,6 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real h, fmi2Boolean ke
     Instance *i = c;
     (void)keep;
     i->touched = 0;
-    if (MOVES == 2 && chdir("/")) abort();
     if (i->motor.verbose) {
         i->functions->logger(i->functions->componentEnvironment, i->name, fmi2Warning, "load",
                              "%s carries %.3f N.m, step %d", i->name, i->motor.load, i->motor.steps);
