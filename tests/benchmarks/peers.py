@@ -105,15 +105,13 @@ class Libcosim(Peer):
     """libcosim; `recorded` is "series" for its observer in memory, "csv" for that of files."""
 
     def _open(self, steps: int) -> tuple[Any, Any]:
-        from libcosimpy.CosimExecution import CosimExecution
-        from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
-        from libcosimpy.CosimObserver import CosimObserver
+        from masters import libcosimpy
 
-        log_output_level(CosimLogLevel.ERROR)
-        execution = CosimExecution.from_ssp_file(str(self.package), round(1e9 * self.step_size(steps)))
+        cosim = libcosimpy()
+        execution = cosim.Execution.from_ssp_file(str(self.package), round(1e9 * self.step_size(steps)))
         observer = None
         if self.recorded == "series":
-            observer = CosimObserver.create_time_series(10_000_000)
+            observer = cosim.Observer.create_time_series(10_000_000)
             execution.add_observer(observer)
             self._observe(execution, observer)
         elif self.recorded == "csv":
@@ -186,22 +184,9 @@ class Fmpy(Peer):
     """fmpy's own master for packages, written in Python; it keeps all rows in memory."""
 
     def _run(self, steps: int, count: int) -> Any:
-        from fmpy.ssp.simulation import simulate_ssp
-        from fmpy.ssp.ssd import Parameter, ParameterSet
+        from masters import fmpy_rows
 
-        values = [
-            Parameter(name=f"{name}.{instance.fmu.ports[variable].own}", type="Real", value=float(value))
-            for name, instance in self.scene.instances.items()
-            for variable, value in instance.values.items()
-            if variable != "inputs_at_step_end"
-        ]
-        size = self.step_size(steps)
-        return simulate_ssp(
-            str(self.package),
-            stop_time=(count - 0.5) * size,
-            step_size=size,
-            parameter_set=ParameterSet(parameters=values),
-        )
+        return fmpy_rows(self.source.scene(steps), self.package, count)
 
     def time(self, steps: int, turns: float) -> Timing:
         """Seconds of its one call until the last FMU is there, and from then to the end of the steps."""

@@ -115,8 +115,8 @@ def ecos(scene: Scene, package: Path) -> Signals:
     return {signal: np.array(values) for signal, values in rows.items()}
 
 
-def fmpy(scene: Scene, package: Path) -> Signals:
-    """fmpy reads the package but not its parameters, and stamps a row with the time before its step."""
+def fmpy_rows(scene: Scene, package: Path, steps: int) -> Any:
+    """Rows by fmpy, which reads no parameters, and stamps each with the time before its step."""
     from fmpy.ssp.simulation import simulate_ssp
     from fmpy.ssp.ssd import Parameter, ParameterSet
 
@@ -126,12 +126,16 @@ def fmpy(scene: Scene, package: Path) -> Signals:
         for variable, value in instance.values.items()
         if variable != "inputs_at_step_end"
     ]
-    rows = simulate_ssp(
+    return simulate_ssp(
         str(package),
-        stop_time=(scene.steps - 0.5) * scene.step_size,
+        stop_time=(steps - 0.5) * scene.step_size,
         step_size=scene.step_size,
         parameter_set=ParameterSet(parameters=values),
     )
+
+
+def fmpy(scene: Scene, package: Path) -> Signals:
+    rows = fmpy_rows(scene, package, scene.steps)
     return {signal: rows[signal] for signal in reals(scene)}
 
 

@@ -1,7 +1,6 @@
 /* The motor as an FMI 2.0 co-simulation FMU of a maker who knows printf and no reset. */
 
 #include <stdlib.h>
-#include <unistd.h>
 
 #include "fmi2FunctionTypes.h"
 #include "motor.h"
