@@ -49,7 +49,7 @@ TIMES, ROWS = ("times", "new_times", "merged_times"), ("rows", "new_rows", "merg
 DUALS, REALS, MARKS = (
     ("starts", "sizes"),
     ("lowest", "left"),
-    ("doubtful", "own", "inside", "may_be", "unsure"),
+    ("inside", "may_be", "unsure"),
 )
 PLACES = (*TIMES, *ROWS, *DUALS, *REALS, *MARKS)
 _EXPRESS = ctypes.PYFUNCTYPE(None, ctypes.c_int64)
@@ -63,7 +63,8 @@ class _Composed(ctypes.Structure):
         *fields(tangents="void_p", express="void_p"),
         ("judges", JudgesInC),
         *fields(**dict.fromkeys(PLACES, "void_p")),
-        *fields(room="int64", count_column="int64", angle="int64", complete="int64", share="double"),
+        *fields(room="int64", count_column="int64", angle="int64"),
+        *fields(count="int64", more="int64", complete="int64", share="double"),
     ]
 
 

@@ -58,14 +58,15 @@ struct composed {
     double *times, *new_times, *merged_times; /* of samples, for as many as there is room */
     dual *rows, *new_rows, *merged_rows, *starts, *sizes;
     double *lowest, *left;
-    char *doubtful, *own, *inside, *may_be, *unsure;
-    int64_t room, count_column, angle, complete; /* the shaft's angle among the signals; whether nothing broke off */
-    double share; /* see composed.py */
+    char *inside, *may_be, *unsure;
+    int64_t room, count_column, angle; /* the shaft's angle among the signals */
+    int64_t count, more, complete;     /* samples; times of further ones; whether nothing broke off */
+    double share;                      /* see composed.py */
 };
 
-enum { PARTS = 8, ROUNDS = 14 };    /* of a step that is divided, and how often: 4e12 parts */
-enum { DOUBTFUL = 1, EDGED = 2 };   /* steps: may hold a worst value, hold an edge of a window */
-static const double NARROW = 1e-12; /* of the run: steps that are divided no more, which may hold a jump */
+enum { PARTS = 8, EARLY = 2, ROUNDS = 16 }; /* of a step that is divided; of dividing it about its minimum, and at all */
+static const double BESIDE = 1.0 / 32.0;    /* of a step: samples on both sides of its minimum */
+static const double NARROW = 1e-12;         /* of the run: steps that are divided no more, which may hold a jump */
 /* of the worst and of the largest value: what a cubic, and rounding, may leave */
 static const double EXACT = 1e-11, ROUNDED = 1e-13;
 static const double DOUBT = 0.25; /* of the difference between second rates over a step, see curves.h */
@@ -89,37 +90,41 @@ static bool sample_at(const struct composed *composed, int64_t count, const doub
     return nothing == 0.0;
 }
 
-/* Add a time in order, each once. */
-static int64_t with_time(double *times, int64_t count, double time)
+static int by_size(const void *one, const void *other)
 {
-    int64_t place = count;
-    while (place > 0 && times[place - 1] > time)
-        place--;
-    if (place > 0 && times[place - 1] == time)
-        return count;
-    memmove(times + place + 1, times + place, (size_t)(count - place) * sizeof *times);
-    times[place] = time;
-    return count + 1;
+    const double first = *(const double *)one, second = *(const double *)other;
+    return (first > second) - (first < second);
 }
 
-/* Take samples in, except at times that are known. */
-static int64_t merge(const struct composed *composed, int64_t count, int64_t more)
+/* Bring times in order, each once; returns how many are left. */
+static int64_t in_order(double *times, int64_t count)
+{
+    int64_t kept = 1;
+    qsort(times, (size_t)count, sizeof *times, by_size);
+    for (int64_t place = 1; place < count; place++)
+        if (times[place] != times[kept - 1])
+            times[kept++] = times[place];
+    return kept;
+}
+
+/* Take the further samples in, except at times that are known. */
+static void merge(struct composed *composed)
 {
     const size_t kept = composed->tangents->kept_count, size = kept * sizeof(dual);
     int64_t merged = 0, old = 0, new = 0;
-    while (old < count || new < more) {
-        const bool known = old < count && (new == more || composed->times[old] <= composed->new_times[new]);
+    while (old < composed->count || new < composed->more) {
+        const bool known =
+            old < composed->count && (new == composed->more || composed->times[old] <= composed->new_times[new]);
         const double time = known ? composed->times[old] : composed->new_times[new];
         const dual *row = known ? composed->rows + (size_t)old * kept : composed->new_rows + (size_t)new * kept;
         memcpy(composed->merged_rows + (size_t)merged * kept, row, size);
         composed->merged_times[merged++] = time;
         old += known;
-        while (new < more && composed->new_times[new] == time)
-            new++;
+        new += new < composed->more && composed->new_times[new] == time;
     }
     memcpy(composed->times, composed->merged_times, (size_t)merged * sizeof(double));
     memcpy(composed->rows, composed->merged_rows, (size_t)merged * size);
-    return merged;
+    composed->count = merged;
 }
 
 /* How far an angle is beyond another one, within a turn. */
@@ -158,39 +163,73 @@ static int64_t first_times(const struct composed *composed, int64_t steps, int64
                 time = recorded_at(composed->run, sample);
             }
         }
-        count = with_time(composed->times, count, time);
+        composed->times[count++] = time;
     }
-    return count;
+    return in_order(composed->times, count);
 }
 
 /* What a motion times a sign does not go below on each step. */
-static void lowest_of(const struct composed *composed, int64_t count, const dual *first, int64_t stride, double sign)
+static void lowest_of(const struct composed *composed, const dual *first, int64_t stride, double sign)
 {
-    find_lowest(count, DOUBT, sign, composed->times, &first->value, &first->tangent, 2 * stride, composed->lowest);
+    find_lowest(composed->count, DOUBT, sign, composed->times, &first->value, &first->tangent, 2 * stride,
+                composed->lowest);
 }
 
-/* Mark the steps within which alone a signal may be where its extremes lie. */
-static void mark_hidden(const struct composed *composed, int64_t count, const struct moving *moving)
+static bool is_wide(const struct composed *composed, int64_t place)
 {
-    const int64_t kept = (int64_t)composed->tangents->kept_count;
+    return composed->times[place + 1] - composed->times[place] > NARROW * composed->times[composed->count - 1];
+}
+
+/* Ask for a sample at a time. Without room for it nothing is divided any more. */
+static void add(struct composed *composed, double time)
+{
+    if (composed->count + composed->more < composed->room)
+        composed->new_times[composed->more++] = time;
+    else
+        composed->complete = false;
+}
+
+static void divide_evenly(struct composed *composed, int64_t place)
+{
+    const double start = composed->times[place], size = composed->times[place + 1] - start;
+    for (int part = 1; part < PARTS; part++)
+        add(composed, start + size * ((double)part / PARTS));
+}
+
+/* Divide a step about the minimum of its cubic, times a sign. */
+static void divide_at_minimum(struct composed *composed, int64_t place, const dual *values, int64_t stride, double sign)
+{
+    const double start = composed->times[place], size = composed->times[place + 1] - start;
+    const double rise = sign * (values[stride].value - values->value);
+    const double before = sign * size * values->tangent, after = sign * size * values[stride].tangent;
+    const double square = 3.0 * rise - 2.0 * before - after, cube = before + after - 2.0 * rise;
+    const double root = sqrt(square * square - 3.0 * cube * before); /* NaN where it only falls or only rises */
+    double share = square > 0.0 ? -before / (square + root) : (root - square) / (3.0 * cube);
+    if (!(share > BESIDE && share < 1.0 - BESIDE))
+        share = values[stride].value * sign < values->value * sign ? 1.0 - BESIDE : BESIDE;
+    for (int side = -1; side <= 1; side++)
+        if (share + side * BESIDE > 0.0 && share + side * BESIDE < 1.0)
+            add(composed, start + size * (share + side * BESIDE));
+}
+
+/* Divide the steps within which alone a signal may be where its extremes lie. */
+static void divide_hidden(struct composed *composed, const struct moving *moving)
+{
+    const int64_t kept = (int64_t)composed->tangents->kept_count, count = composed->count;
     memset(composed->inside, 1, (size_t)count);
     memset(composed->may_be, 1, (size_t)count);
     for (size_t window = 0; window < moving->window_count; window++) {
         const dual *first = composed->rows + moving->windows[window];
-        lowest_of(composed, count, first, kept, -1.0);
+        lowest_of(composed, first, kept, -1.0);
         for (int64_t place = 0; place < count; place++)
             composed->inside[place] &= first[place * kept].value > 0.0;
         for (int64_t place = 0; place + 1 < count; place++)
             composed->may_be[place] &= -composed->lowest[place] > 0.0;
     }
     for (int64_t place = 0; moving->window_count > 0 && place + 1 < count; place++)
-        if (composed->may_be[place] && !composed->inside[place] && !composed->inside[place + 1])
-            composed->own[place] |= DOUBTFUL;
-}
-
-static bool is_wide(const struct composed *composed, int64_t count, int64_t place)
-{
-    return composed->times[place + 1] - composed->times[place] > NARROW * composed->times[count - 1];
+        if (composed->may_be[place] && !composed->inside[place] && !composed->inside[place + 1] &&
+            is_wide(composed, place))
+            divide_evenly(composed, place);
 }
 
 static dual angle_at(const struct composed *composed, int64_t place)
@@ -200,133 +239,98 @@ static dual angle_at(const struct composed *composed, int64_t place)
     return composed->angle < 0 ? none : composed->rows[first + (size_t)composed->angle];
 }
 
-/* Mark the steps that may hold the worst value of a motion; returns how far that may be off. */
-static double mark_doubtful(const struct composed *composed, int64_t count, const struct moving *moving)
+/* Divide the steps that may hold the worst value of a motion; returns how far that may be off. */
+static double divide_doubtful(struct composed *composed, const struct moving *moving, int round)
 {
     const dual *values = moving->values;
     double best = INFINITY, largest = 0.0, left = 0.0;
-    for (int64_t place = 0; place < count; place++) {
+    for (int64_t place = 0; place < composed->count; place++) {
         const double value = values[place * moving->stride].value;
-        composed->inside[place] = is_at(moving, angle_at(composed, place).value);
-        best = composed->inside[place] && moving->sign * value < best ? moving->sign * value : best;
+        if (is_at(moving, angle_at(composed, place).value) && moving->sign * value < best)
+            best = moving->sign * value;
         largest = fabs(value) > largest ? fabs(value) : largest;
     }
     if (best == INFINITY)
         return 0.0;
-    lowest_of(composed, count, values, moving->stride, moving->sign);
+    lowest_of(composed, values, moving->stride, moving->sign);
     const double most = EXACT * fabs(best) + ROUNDED * largest;
-    for (int64_t place = 0; place + 1 < count; place++) {
+    for (int64_t place = 0; place + 1 < composed->count; place++) {
         const double off = best - composed->lowest[place];
         const double middle = 0.5 * (angle_at(composed, place).value + angle_at(composed, place + 1).value);
-        if (!is_at(moving, middle))
+        if (!is_wide(composed, place) || !is_at(moving, middle))
             continue;
-        if (off > left && is_wide(composed, count, place))
-            left = off;
-        composed->own[place] |= off > most ? DOUBTFUL : 0;
+        left = off > left ? off : left;
+        if (off > most && round < EARLY)
+            divide_at_minimum(composed, place, values + place * moving->stride, moving->stride, moving->sign);
+        else if (off > most)
+            divide_evenly(composed, place);
     }
     if (moving->held)
-        mark_hidden(composed, count, moving);
+        divide_hidden(composed, moving);
     return left > most ? left : most;
 }
 
-/* The time within a step at which the shaft stands at an angle, as it seems from the nearer end; NaN where that is not inside. */
-static double time_of(const struct composed *composed, int64_t place, double angle)
+/* Divide a step where the shaft stands at an angle, as it seems from the nearer end. */
+static void divide_at_edge(struct composed *composed, int64_t place, double angle)
 {
     const dual before = angle_at(composed, place), after = angle_at(composed, place + 1);
     const double edge = angle + TURN * floor((0.5 * (before.value + after.value) - angle) / TURN + 0.5);
     const double passed = edge - before.value, ahead = after.value - edge;
     const double start = composed->times[place], end = composed->times[place + 1];
-    if (!(passed * ahead > 0.0) || fabs(passed) <= EDGE || fabs(ahead) <= EDGE)
-        return NAN;
+    if (!(passed * ahead > 0.0) || fabs(passed) <= EDGE || fabs(ahead) <= EDGE || !is_wide(composed, place))
+        return;
     double time = fabs(passed) < fabs(ahead) ? start + passed / before.tangent : end - ahead / after.tangent;
     if (!(time > start && time < end))
         time = start + (end - start) * (passed / (passed + ahead));
-    return time > start && time < end ? time : NAN;
+    if (time > start && time < end)
+        add(composed, time);
 }
 
-/* Add the times within a step at which windows of unsure questions begin and end; returns how many there are with these. */
-static int64_t with_edges(const struct composed *composed, int64_t place, int64_t more)
+/* Divide the steps that may hold the worst value of a question, and at the edges of its windows; whether there are any. */
+static bool divide_for(struct composed *composed, int64_t asked, int round)
 {
-    for (size_t motion = 0; motion < composed->motion_count; motion++) {
-        const struct moving *moving = &composed->motions[motion];
-        for (int end = 0; moving->width >= 0.0 && composed->unsure[moving->asked] && end < 2; end++) {
-            const double time = time_of(composed, place, moving->start + end * moving->width);
-            if (isfinite(time))
-                more = with_time(composed->new_times, more, time);
-        }
-    }
-    return more;
-}
-
-/* Mark the steps that may hold the worst value of a question, or an edge of its window; returns whether there are any. */
-static bool mark(const struct composed *composed, int64_t count, int64_t asked)
-{
-    bool marked = false;
-    memset(composed->own, 0, (size_t)count);
+    const int64_t before = composed->more;
     composed->left[asked] = 0.0;
     for (size_t motion = 0; motion < composed->motion_count; motion++) {
         const struct moving *moving = &composed->motions[motion];
         if (moving->asked != asked)
             continue;
-        const double off = mark_doubtful(composed, count, moving);
+        const double off = divide_doubtful(composed, moving, round);
         composed->left[asked] = off > composed->left[asked] ? off : composed->left[asked];
-        for (int64_t place = 0; moving->width >= 0.0 && place + 1 < count; place++)
-            if (isfinite(time_of(composed, place, moving->start)) ||
-                isfinite(time_of(composed, place, moving->start + moving->width)))
-                composed->own[place] |= EDGED;
+        for (int64_t place = 0; moving->width >= 0.0 && place + 1 < composed->count; place++) {
+            divide_at_edge(composed, place, moving->start);
+            divide_at_edge(composed, place, moving->start + moving->width);
+        }
     }
-    for (int64_t place = 0; place + 1 < count; place++) {
-        composed->own[place] = is_wide(composed, count, place) ? composed->own[place] : 0;
-        composed->doubtful[place] |= composed->own[place];
-        marked |= composed->own[place] != 0;
-    }
-    return marked;
+    return composed->more > before || !composed->complete;
 }
 
-/* The times that divide the marked steps, after 0: their number, 0 where there is no room. */
-static int64_t divided(const struct composed *composed, int64_t count)
+/* Divide the steps until the worst values of the unsure questions are found, where there is room. */
+static void divide(struct composed *composed)
 {
-    const int64_t most = PARTS + 2 * (int64_t)composed->motion_count;
-    int64_t more = 1;
-    composed->new_times[0] = 0.0;
-    for (int64_t place = 0; place + 1 < count; place++) {
-        const double start = composed->times[place], size = composed->times[place + 1] - start;
-        if (composed->doubtful[place] && count + more + most > composed->room)
-            return 0;
-        for (int64_t part = 1; composed->doubtful[place] & DOUBTFUL && part < PARTS; part++)
-            composed->new_times[more++] = start + size * ((double)part / PARTS);
-        if (composed->doubtful[place] & EDGED)
-            more = with_edges(composed, place, more);
-    }
-    return more;
-}
-
-/* Divide the steps until the worst values of the unsure questions are found, where there is room: the number of samples. */
-static int64_t divide(struct composed *composed, int64_t count)
-{
-    composed->complete = sample_at(composed, count, composed->times, composed->rows);
-    for (int64_t round = 0;; round++) {
+    composed->complete = sample_at(composed, composed->count, composed->times, composed->rows);
+    for (int round = 0;; round++) {
         if (composed->express)
-            composed->express(count);
-        memset(composed->doubtful, 0, (size_t)count);
+            composed->express(composed->count);
+        composed->more = 0;
+        add(composed, 0.0);
         for (size_t asked = 0; asked < composed->asked_count; asked++)
-            composed->unsure[asked] = composed->unsure[asked] && mark(composed, count, (int64_t)asked);
-        const int64_t more = divided(composed, count);
-        if (more == 1 || round + 1 == ROUNDS || !composed->complete)
-            return count;
-        composed->complete = more && sample_at(composed, more, composed->new_times, composed->new_rows);
-        if (more)
-            count = merge(composed, count, more);
+            composed->unsure[asked] = composed->unsure[asked] && divide_for(composed, (int64_t)asked, round);
+        if (composed->more <= 1 || round + 1 == ROUNDS || !composed->complete)
+            return;
+        composed->more = in_order(composed->new_times, composed->more);
+        composed->complete = sample_at(composed, composed->more, composed->new_times, composed->new_rows);
+        merge(composed);
     }
 }
 
-static void hold_extremes(const struct composed *composed, int64_t count)
+static void hold_extremes(const struct composed *composed)
 {
     const size_t kept = composed->tangents->kept_count;
     for (size_t place = 0; place < composed->latch_count; place++) {
         const struct latch *latch = &composed->latches[place];
         double lowest = INFINITY;
-        for (int64_t sample = 0; sample < count; sample++) {
+        for (int64_t sample = 0; sample < composed->count; sample++) {
             const double value = latch->sign * composed->rows[(size_t)sample * kept + (size_t)latch->base].value;
             lowest = value < lowest ? value : lowest;
             latch->values[sample] = latch->sign * lowest;
@@ -338,9 +342,10 @@ static void hold_extremes(const struct composed *composed, int64_t count)
  * many there are, 0 where there is no room for the first of them. */
 EXPORT int64_t compose(struct composed *composed, int64_t steps, int64_t samples, const char *wanted)
 {
-    int64_t count = first_times(composed, steps, samples);
+    composed->count = first_times(composed, steps, samples);
     memcpy(composed->unsure, wanted, composed->asked_count);
-    count = count ? divide(composed, count) : 0;
-    hold_extremes(composed, count);
-    return count;
+    if (composed->count)
+        divide(composed);
+    hold_extremes(composed);
+    return composed->count;
 }
