@@ -5,6 +5,7 @@ The FMUs upstream of a claim say by which method its error is estimated, and whe
 
 import math
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -15,7 +16,9 @@ from ..declaring.upstream import sources_of, upstream
 from ..declaring.variables import EXTREMES, MOTION
 from ..errors import listed
 from ..traces.signals import Floats, Integers
+from .claims.bounded import Bounded
 from .claims.claim import Claim
+from .claims.expressions import is_expression
 from .claims.movers import movers_of
 from .master.grid import SAME, contradicted, passed_by, period
 from .planning.requested import Movements, Requested
@@ -177,6 +180,30 @@ class Dependence:
                 )
             )
         return found
+
+    @cached_property
+    def cornered(self) -> dict[int, Bounded]:
+        """Claims on the curves of which mechanisms of one's own hold extremes, by the claims on these.
+
+        How far a curve may be off beside its samples, as at a corner, may not show in coarser runs.
+        """
+        found = dict[int, Bounded]()
+        for number, claim in enumerate(self.claims):
+            if not isinstance(claim, Bounded) or is_expression(claim.signal) or claim.window:
+                continue
+            name, _, held = claim.signal.partition(".")
+            fmu = self._scene.instances[name].fmu
+            known = fmu.facts.extremes if fmu.facts and not COMPONENTS.owns(fmu.component) else {}
+            base, sign = known.get(held, (held, 0.0))
+            if base != held and sign == claim.sense:
+                rated = bool(fmu.ports[base].rate)
+                found[number] = replace(claim, signal=f"{name}.{base}", at_samples=not rated)
+        return found
+
+    @property
+    def curves(self) -> list[str]:
+        """The signals of these curves, with their rates."""
+        return self._requested.with_rates(claim.signal for claim in self.cornered.values())
 
     @cached_property
     def counters(self) -> dict[str, list[int]]:

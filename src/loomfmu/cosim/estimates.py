@@ -76,7 +76,7 @@ class Estimates:
         self.claims, self._dependence = dependence.claims, dependence
         self._run, self._signals, self._deciders = run, signals, deciders
         # what is kept of a run, beside what claims need, to tell whether steps are short enough
-        self.shown = (*self._dependence.counters, *self.angles)
+        self.shown = (*self._dependence.counters, *self.angles, *self._dependence.curves)
         self.methods = self._dependence.methods
 
     @property
@@ -167,6 +167,8 @@ class Estimates:
         Those that are `exact` are by the mechanisms' own functions: no steps are too long for them.
         """
         found = list(verdicts)
+        for number, curve in self._dependence.cornered.items():
+            found[number] = replace(found[number], between=curve.judge(trace).between)
         runs = [self.judged(trace, ()), *coarser.runs]
         unshown = self._dependence.unshown(scene, runs, exact)
         for number, why in self._dependence.differing(runs).items():
