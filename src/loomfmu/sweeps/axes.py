@@ -109,6 +109,12 @@ class Range(Keyed):
         values = low * (high / low) ** shares if self.logarithmic else low + shares * (high - low)
         return np.asarray(np.clip(np.where(shares == 1.0, high, values), low, high))
 
+    def rate(self, share: float) -> float:
+        """The derivative of a real value by the share of the range."""
+        if self.logarithmic:
+            return float(self.at(share)) * math.log(self.high / self.low)
+        return self.high - self.low
+
     def share(self, value: float) -> float:
         """Return the place of a real number in the range, 0 to 1; the nearer end for one outside."""
         value = min(max(value, self.low), self.high)

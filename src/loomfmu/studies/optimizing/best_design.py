@@ -10,8 +10,9 @@ from ...display import printed
 from ...display.printed import say
 from ...sweeps.varied import labelled
 from ...traces.plotting import COLOURS, figure, fixed_style
+from ..polished import Floats
 from .optimum import Optimum, best_tables, conclusion, front_table
-from .runs import Design, Floats
+from .runs import Design
 from .study import Goal
 
 

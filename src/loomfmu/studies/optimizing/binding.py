@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from .polished import Tangent, program, tangent
-from .runs import Design, Floats, Runs, about
+from ..polished import Floats, Tangent, program
+from .near import Near
+from .runs import Design, Runs
 from .search import ALIKE
 
 NEAR = 1e-6  # of a claim's scale or of a range: what is as near to its end may bind
@@ -49,8 +50,8 @@ def binding(runs: Runs, design: Design, names: Sequence[str], bounds: Floats) ->
     ranges = [runs.study.variables[place].key for place in places]
     x = np.array([design.point[place] for place in places])
     scales = np.maximum(np.abs(design.heights), 1e-300)
-    function = about(runs, design, lambda heights: heights / scales)
-    here = tangent(function, x) if places else None
+    near_by = Near(runs, design, lambda heights: heights / scales)
+    here = near_by.tangent(x) if places else None
     if here is None:
         return []
     step, claims, ends = _priced(here)
@@ -58,7 +59,7 @@ def binding(runs: Runs, design: Design, names: Sequence[str], bounds: Floats) ->
     free = _solved(here, np.full(len(near), FAR), np.maximum(-STEP, -x), np.minimum(STEP, 1.0 - x))
     lost = here.changes @ free.x[: len(x)] < -PRICE if free is not None else np.zeros_like(near)
     binds = near & ((claims > PRICE) | lost)
-    (after,) = function([np.clip(x + step, 0.0, 1.0)])
+    (after,) = near_by.at([np.clip(x + step, 0.0, 1.0)])
     jumps = near & ~binds & (after.room < 0.0) if after is not None else np.zeros_like(near)
     relaxed = RELAXED * np.where(bounds == 0.0, 1.0, np.abs(bounds) / runs.limits.scales)
     found = [

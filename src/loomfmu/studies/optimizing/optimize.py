@@ -48,8 +48,9 @@ def optimize(
 ) -> Optimum:
     """Search the best design of a study, or go on with a search, and write it as a scene that runs.
 
-    Differential evolution searches everywhere; from the best design of each combination of options, linear
-    programs go on to where claims bind. The result is the same on any number of processes.
+    From the best designs of each combination of options, linear programs with the components' derivatives go
+    to where claims bind. Where a scene has none, or there are many combinations, differential evolution
+    searches everywhere first. The result is the same on any number of processes.
 
     Args:
         path: the study file
@@ -85,7 +86,7 @@ def optimize(
         place = cluster(scheduler) if scheduler else local(study.scene, processes, generation(study))
         pool = stack.enter_context(closing(place))
         advance = stack.enter_context(progress_bar(study.title, expected(study), wanted=progress))
-        runs = stack.enter_context(closing(Runs(study, job, pool, files.runs, limits, advance)))
+        runs = stack.enter_context(closing(Runs(study, job, pool, files.runs, limits, advance, loom)))
         return found_of(runs, searched(runs, own, path), verdicts, files)
 
 

@@ -6,20 +6,24 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from io import BufferedRandom
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ...cosim.prepared import Prepared
 from ...errors import LoomfmuError
 from ...files import cannot_write
 from ...sweeps.schedule import Pool, run_batches
 from ...sweeps.varied import Value
 from ...sweeps.worker import Batch, ClaimResult, Job
+from ...traces import Verdict
+from ..cases import Case
+from ..gradient import move_of
+from ..polished import Floats
 from .study import Study
 
 Point = tuple[float, ...]  # a number for each variable, see `Variable.value`
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -78,15 +82,27 @@ class Design:
 
 
 class Runs:
-    """Runs designs in a pool. What the file `path` has of an earlier search is not run again."""
+    """Runs designs in a pool. What the file `path` has of an earlier search is not run again.
+
+    `loom` is the study's scene, for derivatives.
+    """
 
     def __init__(
-        self, study: Study, job: Job, pool: Pool, path: Path, limits: "Limits", advance: Callable[[int], None]
+        self,
+        study: Study,
+        job: Job,
+        pool: Pool,
+        path: Path,
+        limits: "Limits",
+        advance: Callable[[int], None],
+        loom: Prepared,
     ):
         self.study = study
         self.designs: dict[tuple[Value, ...], Design] = {}  # in the order in which they were first wanted
         self.ran = 0  # now, and not in an earlier search
         self._job, self._pool, self.limits, self._advance = job, pool, limits, advance
+        self._loom, real = loom, [study.variables[place].varied for place in study.continuous]
+        self.derived = loom.has_derivatives and not any(each.needs_scene for each in real)
         self._path, self._results = path, _read(path)
         try:
             self._file: BufferedRandom = path.open("r+b" if path.exists() else "w+b")
@@ -122,8 +138,58 @@ class Runs:
 
     def _settings(self, row: tuple[Value, ...]) -> dict[str, Any]:
         size = len(self.study.variables)
-        values, case = row[:size], self.study.situations[int(row[size]) if len(row) > size else 0]
+        return self._set(row[:size], self.study.situations[int(row[size]) if len(row) > size else 0])
+
+    def _set(self, values: Sequence[Value], case: Case) -> dict[str, Any]:
         return {**self.study.fixed, **self.study.setting(values), **case.settings}
+
+    def slopes(self, point: Point) -> Floats | None:
+        """The derivatives of goals and of the room at claims, by the shares of the ranges.
+
+        Shape (goals + claims, ranges), in each row that of the worst case. None where there are none.
+        """
+        if not self.derived:
+            return None
+        try:
+            found = [self._derived(point, case) for case in self.study.situations]
+        except LoomfmuError:
+            return None
+        numbers, slopes = (np.array(each) for each in zip(*found, strict=True))
+        goals = len(self.study.goals)
+        sides = np.where(np.arange(numbers.shape[1]) < goals, 1.0, -1.0)
+        worst = np.argmax(np.nan_to_num(sides * numbers, nan=np.inf), axis=0)
+        of_worst: Floats = slopes[worst, np.arange(len(worst))]
+        return np.nan_to_num(of_worst)
+
+    def _derived(self, point: Point, case: Case) -> tuple[Floats, Floats]:
+        """Goals and room in a case, and their derivatives by the shares of the ranges."""
+        study = self.study
+        values = [each.value(number) for each, number in zip(study.variables, point, strict=True)]
+        moves, rates = [], []
+        for place in study.continuous:
+            variable = study.variables[place]
+            _settings, change = move_of(self._loom.scene, variable.varied, float(values[place]))
+            rates.append(variable.range.rate(point[place]) if variable.range else 0.0)
+            moved = [*values[:place], float(values[place]) + change, *values[place + 1 :]]
+            moves.append((self._set(moved, case), change / rates[-1]))
+        found = self._loom.derived(self._set(values, case), moves)
+        if found.early.cut_short:
+            raise LoomfmuError(found.early.cut_short)
+
+        def numbers(verdicts: Sequence[Verdict]) -> Floats:
+            claims, first = verdicts[: len(study.scene.claims)], len(study.scene.claims)
+            signals = [each.worst for each in verdicts[first : first + len(study.measures)]]
+            bounds, distances = (np.array([getattr(c, n) for c in claims]) for n in ("bound", "distance"))
+            return np.concatenate(self._sizes(values, signals, list(map(bool, claims)), bounds, distances))
+
+        slopes = np.stack(
+            [each.slope(lambda trace: numbers(found.judged(trace))) for each in found.directions], axis=1
+        )
+        for row, goal in enumerate(study.goals):
+            if goal.kind == "variable" and goal.place in study.continuous:
+                column = study.continuous.index(goal.place)
+                slopes[row, column] = goal.sign * rates[column]
+        return numbers(found.verdicts), slopes
 
     def _worst(self, point: Point, values: tuple[Value, ...]) -> Design:
         cases = zip(self.study.situations, self._rows(values), strict=True)
@@ -155,44 +221,23 @@ class Runs:
         found = [ClaimResult(*claims[part : part + size]) for part in parts]
         holds = [bool(each.holds) or not needed for each, needed in zip(found, study.required, strict=True)]
         bounds, distances = _numbers(each.bound for each in found), _numbers(each.distance for each in found)
-        of_kind: dict[str, Any] = {"signal": _numbers(signals), "claim": distances, "variable": values}
-        heights = np.array([goal.sign * float(of_kind[goal.kind][goal.place]) for goal in study.goals])
-        room = self.limits.room(holds, bounds, distances)
+        heights, room = self._sizes(values, _numbers(signals), holds, bounds, distances)
         error = result[-1] or ""
         undecided = tuple("" if each.decided or each.error else each.note or "" for each in found)
         return Design(point, values, heights, room, distances, all(holds) and not error, error, undecided)
 
-
-class Measured(NamedTuple):
-    """The measures of a design: the largest of `heights` to minimise, `room` to keep non-negative."""
-
-    heights: Floats
-    room: Floats
-
-
-Pieces = Callable[[Floats], Floats]  # of the goals of a design
-Function = Callable[[Sequence[Floats]], list[Measured | None]]  # at several points at once
-
-
-def about(runs: Runs, design: Design, pieces: Pieces) -> Function:
-    """Return a function that measures designs near one, their values given as shares of their ranges."""
-    places = runs.study.continuous
-
-    def measured(shares: Sequence[Floats]) -> list[Measured | None]:
-        points = []
-        for each in shares:
-            point = list(design.point)
-            for place, share in zip(places, each.tolist(), strict=True):
-                point[place] = share
-            points.append(tuple(point))
-        return [
-            Measured(pieces(each.heights), np.where(np.isnan(each.room), -1.0, each.room))
-            if not each.error and np.all(np.isfinite(each.heights))
-            else None
-            for each in runs.at(points)
-        ]
-
-    return measured
+    def _sizes(
+        self,
+        values: Sequence[Value],
+        signals: Sequence[float] | Floats,
+        holds: Sequence[bool],
+        bounds: Floats,
+        distances: Floats,
+    ) -> tuple[Floats, Floats]:
+        """The goals of a design, and the room at its claims."""
+        of_kind: dict[str, Any] = {"signal": signals, "claim": distances, "variable": values}
+        heights = [goal.sign * float(of_kind[goal.kind][goal.place]) for goal in self.study.goals]
+        return np.array(heights), self.limits.room(holds, bounds, distances)
 
 
 @dataclass(frozen=True)

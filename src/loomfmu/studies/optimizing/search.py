@@ -1,14 +1,15 @@
 """The search: everywhere, then near the best design of each combination of options, for each kind of best."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from itertools import product
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from .polished import polished
-from .runs import Design, Floats, Pieces, Point, Runs, about
+from ..polished import LAST, Floats, polished
+from .near import Near, Pieces
+from .runs import Design, Point, Runs
 from .start import check_effects, check_options
 from .study import Study
 
@@ -17,6 +18,11 @@ EACH = 10  # designs of a generation for each variable
 FEWEST, MOST = 24, 100  # designs of a generation
 TIGHT = 1e-3  # spread of the goal in a generation at which the search ends
 POLISHED = 6  # combinations of options that are searched near their best design
+FEW = 24  # combinations of options, each of which is searched with derivatives
+SAVED = 300  # designs of a search everywhere in place of which derivatives start from one more
+APART = 0.2  # of the ranges: how far such starts lie from each other
+ROUGH = 1e-3  # of the ranges: how near to an end of its way each start is led; the best goes to that end
+SPREAD = 4  # designs of each combination of options from which the best one starts
 EXPECTED = 60  # runs of that for each variable, as a progress bar expects them
 BETWEEN = 4  # a design within a front has that part of the runs of one at its ends
 ALIKE = 1e-7  # of a goal: what the search near a design leaves open
@@ -42,6 +48,8 @@ def searched(runs: Runs, own: Point, path: Path) -> list[Design]:
     check_effects(runs, first, path)
     if study.enumerable:
         runs.at(list(product(*(map(float, range(len(each.options))) for each in study.variables))))
+    if _climbs(runs):
+        runs.at(_spread_over(study, first[:SPREAD]))
     known = np.array([each.heights for each in runs.at(first)])
     scales = _spread(known)
     count = len(study.goals)
@@ -58,6 +66,16 @@ def searched(runs: Runs, own: Point, path: Path) -> list[Design]:
         if np.count_nonzero(weights) > 1:
             found += _best(runs, _towards(weights, ideal, far), first, budget // BETWEEN)
     return _front(found)
+
+
+def _spread_over(study: Study, points: Sequence[Point]) -> list[Point]:
+    """The points with each combination of options."""
+    numbers = [[None] if each.range else map(float, range(len(each.options))) for each in study.variables]
+    return [
+        tuple(own if number is None else number for own, number in zip(point, numbers, strict=True))
+        for numbers in product(*numbers)
+        for point in points
+    ]
 
 
 def _spread(heights: Floats) -> Floats:
@@ -111,27 +129,39 @@ def _search(
     def rank(design: Design) -> tuple[float, float]:
         return design.shortfall, height(design) if np.all(np.isfinite(design.heights)) else np.inf
 
-    known = sorted(runs.designs.values(), key=rank)[: len(first) // 2]
-    start = list(dict.fromkeys([*(each.point for each in known), *first]))[: len(first)]
-    scattered(runs, height, start, budget, runs.study.search["seed"])
-    for leader in list(_leaders(runs, rank)):
-        design = _stepped(runs, leader, rank)
-        if runs.study.continuous:
+    if _climbs(runs):
+        leaders = _leaders(runs, rank, max(1, budget // SAVED // runs.study.combinations))
+    else:
+        known = sorted(runs.designs.values(), key=rank)[: len(first) // 2]
+        start = list(dict.fromkeys([*(each.point for each in known), *first]))[: len(first)]
+        scattered(runs, height, start, budget, runs.study.search["seed"])
+        leaders = [_stepped(runs, each, rank) for each in _leaders(runs, rank)[:POLISHED]]
+    for last in (ROUGH, LAST) if runs.study.continuous else ():
+        for design in leaders:
             shares = np.array([design.point[place] for place in runs.study.continuous])
-            polished(about(runs, design, pieces), shares)
+            polished(Near(runs, design, pieces).tangent, shares, last)
+        leaders = _leaders(runs, rank)[:1]
 
 
-def _leaders(runs: Runs, rank: Callable[[Design], tuple[float, float]]) -> Iterator[Design]:
-    """The best design of each of the best combinations of options."""
-    options = [place for place, each in enumerate(runs.study.variables) if not each.range]
-    seen: set[tuple[float, ...]] = set()
+def _climbs(runs: Runs) -> bool:
+    """Return whether derivatives lead to the best design of each combination of options."""
+    return runs.derived and bool(runs.study.continuous) and runs.study.combinations <= FEW
+
+
+def _leaders(runs: Runs, rank: Callable[[Design], tuple[float, float]], each_has: int = 1) -> list[Design]:
+    """The best designs of each combination of options, so many of each that lie apart."""
+    ranges = runs.study.continuous
+    found: dict[tuple[float, ...], list[Floats]] = {}
+    leaders = []
     for design in sorted(runs.designs.values(), key=rank):
-        combination = tuple(float(round(design.point[place])) for place in options)
-        if combination not in seen and not design.error:
-            seen.add(combination)
-            yield design
-        if len(seen) == POLISHED:
-            return
+        shares = np.array([design.point[place] for place in ranges])
+        options = tuple(round(n) for place, n in enumerate(design.point) if place not in ranges)
+        alike = found.setdefault(options, [])
+        apart = all(np.max(np.abs(shares - each)) > APART for each in alike)
+        if len(alike) < each_has and apart and not design.error:
+            alike.append(shares)
+            leaders.append(design)
+    return leaders
 
 
 def _stepped(runs: Runs, design: Design, rank: Callable[[Design], tuple[float, float]]) -> Design:

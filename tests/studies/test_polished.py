@@ -2,12 +2,12 @@
 
 import math
 from collections.abc import Callable, Sequence
+from functools import partial
 
 import numpy as np
 import pytest
 
-from loomfmu.studies.optimizing.polished import LAST, polished
-from loomfmu.studies.optimizing.runs import Floats, Measured
+from loomfmu.studies.polished import LAST, Floats, Measured, differences, polished
 
 
 def best(
@@ -26,7 +26,7 @@ def best(
             found.append(each)
         return found
 
-    polished(function, np.array(start))
+    polished(partial(differences, function), np.array(start))
     return min(seen)
 
 
@@ -73,6 +73,7 @@ def test_points_that_cannot_be_run_are_walked_around() -> None:
     def function(points: Sequence[Floats]) -> list[Measured | None]:
         return [None if x[0] > 0.7 else Measured(np.array([-x[0]]), np.array([])) for x in points]
 
-    assert polished(function, np.array([0.2]))[0] == pytest.approx(0.7, abs=1e-4)
-    assert polished(function, np.array([0.9]))[0] == 0.9
+    tangent = partial(differences, function)
+    assert polished(tangent, np.array([0.2]))[0] == pytest.approx(0.7, abs=1e-4)
+    assert polished(tangent, np.array([0.9]))[0] == 0.9
     assert LAST < 1e-6

@@ -4,13 +4,14 @@ Claims and goals are worst values, so they have kinks: each is modelled by tange
 steps, which bend where it does. At a corner of claims that bind, a step is one of Newton's method.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple, Self
 
 import numpy as np
+from numpy.typing import NDArray
 
-from .runs import Floats, Function
+Floats = NDArray[np.float64]
 
 WIDEST, FIRST, LAST = 0.5, 0.1, 1e-9  # of the region, as shares of the ranges
 DIFFERENCES = (1e-5, 1e-6, 1e-7)  # steps to either side
@@ -20,6 +21,16 @@ STEEPER, STEEPEST = 10.0, 1e7  # penalty of what claims lack
 GAIN = 1e-12  # of the goal: a step that promises less is none
 CLOSE = 8.0  # times the region: tangents from farther away are forgotten
 STEPS = 80
+
+
+class Measured(NamedTuple):
+    """The measures of a design: the largest of `heights` to minimise, `room` to keep non-negative."""
+
+    heights: Floats
+    room: Floats
+
+
+Function = Callable[[Sequence[Floats]], list[Measured | None]]  # at several points at once
 
 
 @dataclass(frozen=True)
@@ -36,15 +47,20 @@ class Tangent:
         """The goal, with a penalty for what claims lack."""
         return float(np.max(self.heights) + penalty * max(0.0, -np.min(self.room, initial=0.0)))
 
+    @classmethod
+    def of(cls, x: Floats, here: Measured, slopes: Floats, changes: Floats) -> Self:
+        """The tangent that keeps claims a little inside their limits."""
+        return cls(x, here.heights, here.room - INSIDE, slopes, changes)
 
-def polished(function: Function, start: Floats) -> Floats:
-    """A point near `start` from which no small step is better, within 0 and 1."""
-    centre = tangent(function, start)
+
+def polished(tangent: Callable[[Floats], Tangent | None], start: Floats, last: float = LAST) -> Floats:
+    """A point near `start` from which no step is better, `last` or more of the ranges, within 0 and 1."""
+    centre = tangent(start)
     if centre is None:
         return start
     near, reach, penalty = [centre], FIRST, STEEPER
     for _step in range(STEPS):
-        if reach < LAST:
+        if reach < last:
             break
         near = [each for each in near if np.max(np.abs(each.x - centre.x)) <= CLOSE * reach]
         x, promised, penalty = _step_to(centre, near, reach, penalty)
@@ -53,7 +69,7 @@ def polished(function: Function, start: Floats) -> Floats:
         if now - promised <= GAIN * max(1.0, abs(now)) or moved == 0.0:
             reach *= 0.1
             continue
-        found = tangent(function, x)
+        found = tangent(x)
         if found is None:
             reach = 0.5 * moved
             continue
@@ -68,7 +84,7 @@ def polished(function: Function, start: Floats) -> Floats:
     return centre.x
 
 
-def tangent(function: Function, x: Floats) -> Tangent | None:
+def differences(function: Function, x: Floats) -> Tangent | None:
     """Values and slopes at a point, by central differences; None where there are none.
 
     Where both sides disagree there is a kink between them, and the differences are made smaller.
@@ -91,7 +107,7 @@ def tangent(function: Function, x: Floats) -> Tangent | None:
             if down < 0.0 < up:
                 bend = max(bend, float(np.max(np.abs(more / up - less / down))))
         split = len(here.heights)
-        found = Tangent(x, here.heights, here.room - INSIDE, slopes[:split], slopes[split:])
+        found = Tangent.of(x, here, slopes[:split], slopes[split:])
         if bend <= BEND * float(np.max(np.abs(slopes))):
             break
     return found
