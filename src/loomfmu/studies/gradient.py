@@ -15,7 +15,7 @@ from .. import units
 from ..cosim.claims.claims import name_of
 from ..cosim.claims.expressions import is_expression
 from ..cosim.claims.measures import signal_in
-from ..cosim.prepared import Move, Prepared
+from ..cosim.prepared import Derived, Move, Prepared
 from ..cosim.reading import requested
 from ..cosim.scenes.scene import Scene
 from ..display import notebook
@@ -23,6 +23,7 @@ from ..errors import LoomfmuError, shown, suggestion
 from ..sweeps.varied import Varied, varied
 from ..traces import Verdict
 
+Floats = NDArray[np.float64]
 CHANGE = 2.0**-10  # of a value: start values that follow it are found by what changes with it
 
 
@@ -163,6 +164,15 @@ def without_gradient(scene: Scene, verdict: Verdict) -> str:
     if variable in ports and ports[variable].kind != "Real":  # a claim on two signals names a difference
         return "it counts or decides, so it has no derivative"
     return "" if math.isfinite(verdict.worst) else f"it has no value{verdict.note and f' ({verdict.note})'}"
+
+
+def slopes_of(run: Derived, claims: int) -> Floats:
+    """The slopes of the distances of so many claims in the directions of a run, (claims, directions)."""
+    columns = [
+        each.slope(lambda trace: [verdict.distance for verdict in run.judged(trace)[:claims]])
+        for each in run.directions
+    ]
+    return np.stack(columns, axis=1)
 
 
 def number_of(verdict: Verdict, claim: bool = True) -> float:

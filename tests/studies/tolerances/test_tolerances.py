@@ -5,6 +5,7 @@ import re
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from loomfmu import LoomfmuError, limit, prepare, tolerances
@@ -12,7 +13,6 @@ from loomfmu.cli import main
 from loomfmu.cosim.scenes.scene import parse
 from loomfmu.design import loom as design
 from loomfmu.studies.tolerances import results
-from loomfmu.studies.tolerances import tolerances as search
 from loomfmu.studies.tolerances.worst_cases import show
 
 DEMO = Path(__file__).parents[3] / "sims" / "wl680_3600.toml"
@@ -77,9 +77,17 @@ def test_studies_say_what_a_longer_run_would_change(capsys: pytest.CaptureFixtur
 
 
 def test_a_worst_case_inside_the_box_is_found() -> None:
-    found = search._descended(lambda p: (p[0] - 0.37) ** 2 + abs(p[1] - 0.81), (0.0, 1.0), list)
-    # steps end at 2^-16 of a range
-    assert found == pytest.approx((0.37, 0.81), abs=2.0**-15)
+    """Springs between soft and stiff ones make the load of a carrier the highest."""
+    found = tolerances(DEMO.with_name("damper.toml"), vary="damper.spring_stiffness=4N/mm..6.5N/mm", set=FAST)
+    load = found.claims[1]
+    stiffness = np.linspace(4e3, 6.5e3, 251)
+    with prepare(DEMO.with_name("damper.toml"), set=FAST) as loom:
+        rows = loom.evaluate_many({"damper.spring_stiffness": stiffness.tolist()}, errors="none")
+        distances = [rows.verdicts(row)[1].distance for row in range(len(stiffness))]
+    assert 4.5e3 < load.place["damper.spring_stiffness"] < 6e3
+    assert load.worst.distance <= min(distances)  # rows 10 N/m apart come no nearer
+    assert load.worst.distance == pytest.approx(min(distances), abs=0.05)
+    assert found.runs < 60  # 19 points, and a few along the derivatives of each claim
 
 
 def test_the_table_of_a_scene_is_what_the_command_searches(

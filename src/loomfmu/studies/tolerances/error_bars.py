@@ -10,11 +10,10 @@ import numpy as np
 from ...cosim.prepared import Derived, Move, Notes
 from ...cosim.scenes.scene import Scene
 from ...errors import LoomfmuError
-from ...sweeps.varied import Varied
 from ...traces import Verdict
 from ...traces.verdict import remarked
 from ..fitting.measured import Floats
-from ..gradient import move_of, without_gradient
+from ..gradient import move_of, slopes_of, without_gradient
 from ..span import port_of
 from .distributions import Distribution, distribution_of
 from .results import SAME
@@ -63,7 +62,7 @@ def error_bars(scene: Scene, derive: Derive, claims: int) -> Notes:
         if not each.ends[0] <= value <= each.ends[1]:
             return _without(claims, f"{each.key} = {each.varied.show(value)} is outside its tolerance")
     try:
-        slopes = _slopes(scene, derive, [each.varied for each in found], claims)
+        slopes = slopes_of(derive([move_of(scene, each.varied) for each in found]), claims)
     except LoomfmuError as error:
         return _without(claims, str(error))
     bars = [_bar(found, values, row) for row in slopes]
@@ -78,16 +77,6 @@ def error_bars(scene: Scene, derive: Derive, claims: int) -> Notes:
 
 def _without(claims: int, why: str) -> Notes:
     return partial(remarked, remarks=dict.fromkeys(range(claims), f"{NONE}: {why}"))
-
-
-def _slopes(scene: Scene, derive: Derive, keys: Sequence[Varied], claims: int) -> Floats:
-    """The slopes of the claims' distances by the values, shape (claims, values)."""
-    run = derive([move_of(scene, each) for each in keys])
-    columns = [
-        each.slope(lambda trace: [verdict.distance for verdict in run.judged(trace)[:claims]])
-        for each in run.directions
-    ]
-    return np.array(columns).T
 
 
 def _bar(found: Sequence[Distribution], values: Sequence[float], slopes: Floats) -> _Bar:

@@ -9,7 +9,10 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from ...cosim.claims.claims import called
+from ...cosim.prepared import Prepared
 from ...cosim.reading import protected
 from ...cosim.run import prepare
 from ...cosim.scenes.headings import heading
@@ -18,6 +21,8 @@ from ...display.progress import progress as progress_bar
 from ...errors import LoomfmuError
 from ...sweeps.varied import Keyed
 from ..evaluations import LOT, Evaluations
+from ..gradient import move_of, slopes_of
+from ..polished import Floats, Measured, Tangent, differences, polished
 from ..span import Span, set_twice, span_of, warnings_of
 from .distributions import ends_within
 from .proven import proven
@@ -26,7 +31,7 @@ from .results import SAME, Cost, Tolerances, WorstCase
 Shares = tuple[float, ...]  # of the ranges, 0 to 1
 CORNERS = 6  # tolerances of which all corners are tried: 2 to that power
 SCATTERED = 16  # points within the box for each tolerance
-FIRST, LAST = 0.25, 2.0**-16  # steps of the search from the worst point found, as shares of a range
+LAST = 2.0**-16  # of a range: the last steps of the search from the worst point found
 
 
 def tolerances(
@@ -40,7 +45,8 @@ def tolerances(
     """Search the worst case of every claim within the tolerances of a scene.
 
     Tried are the scene's values, the corners of the box (of up to 6 tolerances all of them), and points
-    scattered in it; from the worst of these the search goes on along each value, in ever smaller steps.
+    scattered in it; from the worst of these the search goes on by linear programs, with the components'
+    derivatives where a scene has them.
 
     Args:
         scene: path of a scene file or a system package (.ssp), or a scene that was read before
@@ -139,6 +145,10 @@ def _points(spans: Sequence[Span]) -> list[Shares]:
 class _Box(Evaluations):
     """A prepared scene as a function of the places in its tolerances."""
 
+    def __init__(self, loom: Prepared, spans: Sequence[Span]):
+        super().__init__(loom, spans)
+        self._slopes: dict[Shares, Floats] = {}
+
     def searched(self, points: Sequence[Shares], advance: Callable[[int], None]) -> Tolerances:
         """The worst case of each claim."""
         for first in range(0, len(points), LOT):
@@ -151,9 +161,8 @@ class _Box(Evaluations):
             found.append(self._worst_case(number, points))
             advance(1)
         title = heading(self._loom.scene, [each.key for each in self._spans])
-        return Tolerances(
-            title, self._spans, tuple(found), len(self), warnings_of(self._spans, self.warnings)
-        )
+        runs, warnings = len(self) + len(self._slopes), warnings_of(self._spans, self.warnings)
+        return Tolerances(title, self._spans, tuple(found), runs, warnings)
 
     def _at_once(self, points: Sequence[Shares]) -> Sequence[Shares]:
         """Run points together, and return them."""
@@ -169,7 +178,7 @@ class _Box(Evaluations):
         least, most = distance(ranked[0]), distance(ranked[-1])
         bound = self.at(*self._values(points[0]))[number].bound
         alike = least == most or most - least <= SAME * abs(bound)
-        worst = points[0] if alike else _descended(distance, ranked[0], self._at_once)
+        worst = points[0] if alike else min(ranked[0], self._descended(number, ranked[0]), key=distance)
         own, verdict = (self.estimated(*self._values(place))[number] for place in (points[0], worst))
         costs = []
         for place, span in enumerate(self._spans):
@@ -181,32 +190,43 @@ class _Box(Evaluations):
         costs.sort(key=lambda each: -each.distance)
         return WorstCase(name, own, verdict, values, tuple(costs), not alike)
 
+    def _descended(self, number: int, point: Shares) -> Shares:
+        """A point near that one where a claim, counted from 0, is nearer to its bound, if there is one."""
+        scale = abs(self.at(*self._values(point))[number].bound) or 1.0
+
+        def near(points: Sequence[Floats]) -> list[Measured | None]:
+            self._at_once([tuple(each.tolist()) for each in points])
+            distances = (self.at(*self._values(each.tolist()))[number].distance for each in points)
+            return [
+                Measured(np.array([each / scale]), np.array([])) if math.isfinite(each) else None
+                for each in distances
+            ]
+
+        def tangent(x: Floats) -> Tangent | None:
+            (here,), slopes = near([x]), self._slopes_at(tuple(x.tolist()))
+            if here is None or slopes is None or not np.all(np.isfinite(slopes[number])):
+                return differences(near, x)
+            return Tangent.of(x, here, slopes[[number]] / scale, np.zeros((0, len(x))))
+
+        return tuple(polished(tangent, np.array(point), LAST).tolist())
+
+    def _slopes_at(self, point: Shares) -> Floats | None:
+        """The slopes of all distances by the shares of the tolerances; None where there are none."""
+        if not self._loom.has_derivatives:
+            return None
+        if point not in self._slopes:
+            scene, values = self._loom.scene, self._values(point)
+            moves = [
+                (settings, change / (span.high - span.low))
+                for span, value in zip(self._spans, values, strict=True)
+                for settings, change in [move_of(scene, span.varied, value)]
+            ]
+            try:
+                run = self._loom.derived(self._settings(values), moves)
+            except LoomfmuError:
+                return None
+            self._slopes[point] = slopes_of(run, len(scene.claims))
+        return self._slopes[point]
+
     def _values(self, point: Shares) -> list[float]:
         return [span.at(share) for span, share in zip(self._spans, point, strict=True)]
-
-
-def _descended(
-    distance: Callable[[Shares], float],
-    point: Shares,
-    at_once: Callable[[Sequence[Shares]], Sequence[Shares]],
-) -> Shares:
-    """A point near that one with a smaller distance, if there is one: a search along each value in turn."""
-    if math.isinf(distance(point)):
-        return point
-    step = FIRST
-    while step >= LAST:
-        better = min(at_once(_neighbours(point, step)), key=distance, default=point)
-        if distance(better) < distance(point):
-            point = better
-        else:
-            step /= 2.0
-    return point
-
-
-def _neighbours(point: Shares, step: float) -> list[Shares]:
-    found = []
-    for place, share in enumerate(point):
-        for moved in (max(share - step, 0.0), min(share + step, 1.0)):
-            if moved != share:
-                found.append((*point[:place], moved, *point[place + 1 :]))
-    return found
