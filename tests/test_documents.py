@@ -4,9 +4,11 @@ import ast
 import os
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 import tomllib
+from collections.abc import Iterator
 from pathlib import Path
 from pkgutil import resolve_name
 from typing import Any
@@ -45,7 +47,12 @@ def blocks(page: Path, language: str) -> list[str]:
 
 def prose(page: Path) -> str:
     """The text of a page in one line."""
-    return " ".join(page.read_text().split())
+    return in_one_line(page.read_text())
+
+
+def in_one_line(text: str) -> str:
+    """A text without its line breaks."""
+    return " ".join(text.split())
 
 
 def anchors(page: Path) -> set[str]:
@@ -132,6 +139,48 @@ def test_the_readme_can_be_followed(tmp_path: Path, monkeypatch: pytest.MonkeyPa
             exec(text, shown)
     assert f"{shown['loom'].safe_speed('WL680-3600', clearance='0.5 mm').speed:.2f}" == "63.47"
     assert f"{shown['loom'].clearance_for('650 rpm', 'WL680-3600'):.5f}" == "0.00038"
+
+
+LONG = {
+    "optimize",
+    "prove",
+    "--prove",
+    "tolerances",
+    "fit",
+    "sweep",
+}  # commands that take more than some seconds
+
+
+def printing() -> Iterator[Any]:
+    """Commands, the last of their block, with what a page says that they print."""
+    shown = r"^```sh\n([^`]*)```\n\n(?:(?!```)(?:.+\n)+\n)?```text\n(.*?)^```$"
+    for page, name in zip(PAGES, NAMES, strict=True):
+        for command, text in re.findall(shown, page.read_text(), re.DOTALL | re.MULTILINE):
+            program, *arguments = shlex.split(command.splitlines()[-1], comments=True)
+            if program == "loomfmu" and name != "docs/own_claim.md":  # whose scene is on that page
+                slow = [pytest.mark.slow] if LONG.intersection(arguments) else []
+                yield pytest.param(arguments, text, id=f"{name} {arguments[0]}", marks=slow)
+
+
+@pytest.mark.no_cover
+@pytest.mark.parametrize(("arguments", "text"), list(printing()))
+def test_commands_print_what_pages_show(
+    arguments: list[str],
+    text: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    fmu_cache: None,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "80")
+    assert cli.main(["init", "--all"]) == 0
+    shutil.copy(HOUSE / "docs" / "measured.csv", tmp_path)
+    capsys.readouterr()
+    assert cli.main(arguments) in (0, 1)
+    said = in_one_line(capsys.readouterr().out)
+    for part in re.split(r"^(?:\.\.\.|.* in total)$", text, flags=re.MULTILINE):  # times are others
+        assert in_one_line(part) in said
 
 
 @pytest.mark.slow

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from . import design as design
     from . import live_page as live_page
     from . import report as report
+    from .cosim.many import Rows as Rows
     from .cosim.prepared import Prepared as Prepared
     from .cosim.results import Evaluation as Evaluation
     from .cosim.results import Result as Result
@@ -59,6 +60,7 @@ _HOMES = {
     "Prepared": "cosim.prepared",
     "Proofs": "studies.proving.proofs",
     "Result": "cosim.results",
+    "Rows": "cosim.many",
     "Shares": "studies.tolerances.shares",
     "Sweep": "sweeps.run",
     "Tolerances": "studies.tolerances.results",

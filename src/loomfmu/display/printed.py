@@ -95,13 +95,13 @@ def show(
     say(*([] if further else [""]), *lines, "")
 
 
-def rounded(value: float, up: bool) -> str:
-    """Return a number with ten digits, rounded up or down.
+def rounded(value: float, up: bool, digits: int = 10) -> str:
+    """Return a number with so many digits, rounded up or down.
 
     >>> rounded(2 / 3, up=True), rounded(2 / 3, up=False)
     ('0.6666666667', '0.6666666666')
     """
-    with localcontext(prec=10, rounding=ROUND_CEILING if up else ROUND_FLOOR):
+    with localcontext(prec=digits, rounding=ROUND_CEILING if up else ROUND_FLOOR):
         return f"{+Decimal(value):f}"
 
 

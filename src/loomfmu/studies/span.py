@@ -12,10 +12,12 @@ from .. import units
 from ..cosim.importing.fmus import Port
 from ..cosim.scenes.notes import check_effect
 from ..cosim.scenes.scene import Scene
+from ..display.printed import rounded
 from ..errors import LoomfmuError, shown, within
 from ..sweeps.varied import Keyed, Varied, varied
 
 SENSIBLE = 10.0  # times the scene's value: bounds that are farther apart say nothing about a range
+FOUND = 1e-9  # of a value: limits are found to that
 AROUND = 2.0  # from the scene's value divided by it to the scene's value times it
 FORM = "write it as INSTANCE.VARIABLE or INSTANCE.VARIABLE=LOW..HIGH, such as shaft.speed=300rpm..900rpm"
 
@@ -55,13 +57,20 @@ class Span(Keyed):
         """Equally spaced values, both ends included."""
         return [self.low, *np.linspace(self.low, self.high, count)[1:-1].tolist(), self.high]
 
-    def number(self, value: float) -> str:
-        """A value in the unit that people read it in, without the unit."""
-        return f"{value / self.factor:.7g}"
+    def number(self, value: float, inwards: float = 0.0) -> str:
+        """A value in the unit that people read it in, without the unit.
 
-    def show(self, value: float) -> str:
+        The end of a range is rounded `inwards`: to no less, for 1, or to no more, for -1.
+        """
+        shown = value / self.factor
+        text = f"{shown:.7g}"
+        if inwards * (float(text) - shown) < -FOUND * abs(shown):
+            return f"{float(rounded(shown, inwards > 0.0, 7)):.7g}"
+        return text
+
+    def show(self, value: float, inwards: float = 0.0) -> str:
         """A value with its unit."""
-        return self.number(value) + ("" if self.unit == "1" else f" {self.unit}")
+        return self.number(value, inwards) + ("" if self.unit == "1" else f" {self.unit}")
 
     @property
     def text(self) -> str:

@@ -182,10 +182,10 @@ def _holds(each: ClaimLimits, span: Span) -> str:
 def _range(stretch: Stretch, span: Span) -> str:
     """A range in short: open where it ends with what was searched."""
     if stretch.low == span.low:
-        return f"up to {span.show(stretch.high)}"
+        return f"up to {span.show(stretch.high, -1.0)}"
     if stretch.high == span.high:
-        return f"from {span.show(stretch.low)}"
-    return f"{span.number(stretch.low)} to {span.show(stretch.high)}"
+        return f"from {span.show(stretch.low, 1.0)}"
+    return f"{span.number(stretch.low, 1.0)} to {span.show(stretch.high, -1.0)}"
 
 
 def _limits(each: ClaimLimits, span: Span) -> str:
@@ -269,7 +269,7 @@ def _proven(part: ProvenRange, span: Span) -> str:
 def _sentence(stretch: Stretch, found: Limits) -> str:
     """Return what holds in a range, and which claims end it: by failing, or by being undecided."""
     span, limits = found.span, {limit.value for each in found.claims for limit in each.limits}
-    text = f"All claims hold from {span.number(stretch.low)} to {span.show(stretch.high)}"
+    text = f"All claims hold from {span.number(stretch.low, 1.0)} to {span.show(stretch.high, -1.0)}"
     ends = [
         f"'{claim}' {way} this range"
         for way, claim in (("below", stretch.below), ("above", stretch.above))
@@ -295,7 +295,7 @@ def boundary_rows(found: Boundary) -> list[tuple[str, str, str]]:
     for value, limits in zip(found.values, found.rows, strict=True):
         place = found.second.number(value)
         for stretch in limits.ranges:
-            whole = f"{found.first.number(stretch.low)} to {found.first.show(stretch.high)}"
+            whole = f"{found.first.number(stretch.low, 1.0)} to {found.first.show(stretch.high, -1.0)}"
             binding = " / ".join(filter(None, dict.fromkeys((stretch.below, stretch.above))))
             listed.append((place, whole, binding or "-"))
         if not limits.ranges:
