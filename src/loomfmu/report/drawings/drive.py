@@ -125,7 +125,8 @@ def figure(tracks: Tracks, drive: Drive) -> Figure:
     sketch.label(hub[0] + 0.52 * SECTOR, hub[1], "sector gear", shift=(0.0, 4.0))
     joints = drive.link[0], drive.link[-1], *drive.four_bar
     for point, letter in zip(joints, "ABDK", strict=False):
-        sketch.letter(point, letter, (0.0, -8.0) if letter in "BD" else (12.0, 15.0))
+        beside = {"A": (-13.0, 14.0), "B": (12.0, -5.0), "D": (0.0, -8.0)}.get(letter, (12.0, 15.0))
+        sketch.letter(point, letter, beside)
     if drive.four_bar:
         sketch.label(*hub, "G", "end", (-10.0, -4.0))
     sketch.label(0.0, 0.0, "C", "end", (-12.0, 4.0))
