@@ -1,12 +1,15 @@
 """BeltDynamics under its weight and on a race board: closed forms, elements with one-sided stops."""
 
+import math
 from math import cos, pi, sin, sqrt
 
 import numpy as np
 import pytest
 from belt_board_reference import MovingOnBoard, on_board
 from belt_loom import Loom, X, ends, shape
+from belt_pushed_reference import PushedBelt
 from belt_reference import FiniteElements
+from scipy.optimize import brentq
 
 from loomfmu import judge, run
 from loomfmu.components.belt_dynamics import BeltDynamics
@@ -173,6 +176,63 @@ def test_a_belt_in_motion_on_a_board_against_finite_elements(belt_in_c, distance
     # fourteen elements find what eight find to 3e-3; six modes and 24 places do not bounce quite alike
     assert found[-1] == pytest.approx(np.abs(expected[:, -1]).max(), rel=2.5e-2)
     assert max(found) > 0.5e-3
+
+
+LIMITS = {"WL680-3600": 681.8, "WL800-3600": 553.3, "WL450-4600": 212.6, "WL450-5400": 137.5}  # rev/min
+
+
+def pushed(belt_class, number):
+    """A random belt on its board, at the end of its push, and the reference's on a cover of a stiffness."""
+    draw = np.random.default_rng(number)
+    machine, share = draw.choice(list(LIMITS)), draw.uniform(0.6, 1.2)
+    bow, bow_of = draw.uniform(0.05e-3, 0.5e-3), int(draw.integers(OWN, SPAN + 1))
+    board = int(draw.integers(BOW_SIDE, OTHER_SIDE + 1))
+    side, distance = 1.0 if board == BOW_SIDE else -1.0, draw.choice([0.0, draw.uniform(0.0, 0.6e-3)])
+    given = {
+        "bow": bow,
+        "bow_of": bow_of,
+        "board": board,
+        "board_distance": distance,
+        "gravity": side * EARTH,
+    }
+    loom = Loom(belt_class, share * LIMITS[machine], 1440, 60.0, machine=machine, **given)
+    belt, motion, start = loom.belt, loom.motion, None
+    while not belt.released:
+        start = loom.time if not belt.outside else start
+        loom.turn_to(math.degrees(loom.time * loom.weft.speed) + 0.25)
+    start = brentq(lambda time: motion(time)[0] - belt.shortest_length, start, loom.time, xtol=1e-12)
+    unloaded = curvature(bow, bow_of)
+
+    def expected(cover):
+        reference = PushedBelt(
+            motion,
+            lambda x, length: unloaded(length - x, length),
+            belt.belt_mass,
+            belt.head_mass,
+            belt.given().stiffness,
+            belt.gravity,
+            side,
+            distance,
+            cover,
+        )
+        times, found = reference.run(start, loom.time, 1e-5)
+        lengths, _speeds, accelerations = np.array([motion(time) for time in times]).T
+        at_risk = (belt.head_mass + 0.5 * belt.belt_mass * lengths) * accelerations > 0.0
+        return np.abs(found[at_risk & ((lengths <= 1.0) | (bow_of == SPAN))]).max()
+
+    return belt, expected
+
+
+@pytest.mark.slow
+@pytest.mark.no_cover
+@pytest.mark.parametrize("number", range(30))
+def test_random_belts_are_pushed_along_their_boards_as_another_integration_says(belt_in_c, number):
+    belt, expected = pushed(belt_in_c, number)
+    # of 39, to 6e-3 in the mean: slopes of some percent, six modes and 24 places do not bounce quite alike
+    assert belt.largest_at_risk == pytest.approx(expected(belt.board_stiffness), rel=3e-2)
+    flat = belt.bow_of == SPAN and belt.board == BOW_SIDE and belt.board_distance < belt.bow
+    if not flat:  # a rigid board presses this bow flat, a cover only where the belt is long
+        assert belt.largest_at_risk == pytest.approx(expected(0.0), rel=5e-2, abs=60e-6)
 
 
 @pytest.mark.parametrize("distance", [0.0, 0.3e-3])

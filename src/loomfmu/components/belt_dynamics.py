@@ -77,7 +77,7 @@ MOST_WAVES = 5.0  # half waves of its own bow that a free belt may have: six mod
 LEFT = 2.5e-4  # of the largest deflection: what six modes and the integration leave under the push
 MORE_LEFT = 1e-2  # later, when the belt swings on and comes back, or where an end may be clamped
 MOST_LEFT = 3e-2  # where both may be: under a load that lasts beyond Euler's
-LEFT_ON_BOARD = 0.1  # against a rigid board: by the cover, the places that are looked at, the modes
+LEFT_ON_BOARD = 0.1  # on its cover: by the modes and the places that are looked at, as it bounces
 UNKNOWN_LEFT = 100.0  # with fewer than six modes, of which one gives an eighth of the deflection of six
 SHORTEST_STEP = 1e-100  # [s]: nothing moves in less, whose square is no number any more
 
