@@ -24,7 +24,7 @@ STARTERS = (
     "wl680_3600.toml",
     "sweeps/safe_speed.toml",
 )  # what `loomfmu init` writes: a loom, and a sweep of it
-KINDS = (".toml", ".wif")  # of files that make up the examples
+KINDS = (".py", ".toml", ".wif")  # of files that make up the examples
 HEADINGS = {"parameter": "parameters", "input": "inputs, with start values", "output": "outputs"}
 MOST_VALUES = 6  # of a run of numbered variables that are shown one by one
 

@@ -56,6 +56,14 @@ def test_all_claims_of_a_scene_hold(run: Run, tmp_path: Path, scene: str) -> Non
             assert not verbs, "the name states what must hold; what follows it names the quantity alone"
 
 
+def test_a_roller_that_lifts_off_has_no_pressure_to_claim(run: Run, tmp_path: Path) -> None:
+    scene = (SIMS / "cam_contact.toml").read_text().replace('load = "10 kN"', 'load = "100 N"')
+    (tmp_path / "light.toml").write_text(scene)
+    (tmp_path / "cam_pressure.py").write_bytes((SIMS / "cam_pressure.py").read_bytes())
+    done = run(tmp_path / "light.toml")
+    assert done.status == 1 and "undecided" in done.out
+
+
 def test_the_full_loom_has_every_mechanism_of_a_loom() -> None:
     instances = scenes.load(SIMS / "full_loom.toml").instances
     combing = {"DetachingRoller"}  # of another machine
