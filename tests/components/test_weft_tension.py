@@ -1,7 +1,9 @@
 """WeftTension: each effect alone and exact, all of them against an ODE solver, the pick's events, slack."""
 
+import re
 from functools import partial
 from math import cos, exp, pi, sin, sqrt
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,7 +13,9 @@ from scipy.integrate import solve_ivp
 
 from loomfmu.components.weft_insertion import WeftInsertion
 from loomfmu.components.weft_tension import WeftTension
+from loomfmu.declaring.variables import variables_of
 from loomfmu.physics.weft import capstan_gain, drag_per_length
+from loomfmu.units import parse
 
 RPM = pi / 30.0
 SPEED = 400.0 * RPM
@@ -201,6 +205,38 @@ def test_extremes_do_not_depend_on_the_step(at_end):
     for steps, error in ((72, 1e-5), (144, 4e-7), (720, 2e-9)):
         # the quintic between samples; the rest is their rounding, in the acceleration
         assert on_a_loom(steps) == pytest.approx(fine, rel=error)
+
+
+README = Path(__file__).parents[2] / "fmus" / "weft_tension" / "README.md"
+BANDS = re.findall(
+    r"^\| `(\w+)`[^|]*\| [^|]* \| (\S+) \.\. (\S+) ?([^|]*?) \| (.*) \|$", README.read_text(), re.MULTILINE
+)
+
+
+def on_the_demo(name, value):
+    """Highest tension and snatch in cN, longest slack in ms, with one other value."""
+    weft, head = WeftTension(inputs_at_step_end=True, speed=600.0 * RPM, **{name: value}), WeftInsertion()
+    head.speed = weft.speed
+    head.initialize(0.0)
+    step = 2.0 * pi / weft.speed / 144
+    for n in range(145):
+        weft.travel, weft.velocity, weft.acceleration = head.travel, head.velocity, head.acceleration
+        assert (weft.step((n - 1) * step, step) if n else weft.initialize(0.0)) == 0
+        head.step(n * step, step)
+    return 100.0 * weft.highest_tension, 100.0 * weft.highest_snatch, 1e3 * weft.longest_slack
+
+
+@pytest.mark.few(4)
+@pytest.mark.parametrize("band", BANDS, ids=lambda band: band[0])
+def test_the_readme_prints_what_the_ends_of_the_assumed_ranges_do(band):
+    name, low, high, unit, printed = band
+    target = next(variable.unit for variable in variables_of(WeftTension) if variable.name == name)
+    ends = [on_the_demo(name, parse(f"{each} {unit or '1'}", target)) for each in (low, high)]
+    for texts, values in zip(printed.split(" | "), zip(*ends, strict=True), strict=True):
+        texts = texts.split(" .. ")
+        for text, value in zip(texts if len(texts) == 2 else 2 * texts, values, strict=True):
+            digits = len(text.partition(".")[2])
+            assert round(value, digits) == float(text), (name, text, value)
 
 
 # Laws
