@@ -396,8 +396,10 @@ def test_mechanisms_of_ones_own_and_tables_of_all_types(tmp_path: Path) -> None:
     same(one.instance(step=scene.step_size / 2).along(steps, scene.step_size / 2), expected)
 
 
-@pytest.mark.parametrize("fmi", [2, 3])
-@pytest.mark.parametrize("path", [None, LOOPED, pytest.param(DEMO, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    ("path", "fmi"),
+    [(None, 2), (LOOPED, 3), *(pytest.param(DEMO, fmi, marks=pytest.mark.slow) for fmi in (2, 3))],
+)
 def test_its_sources_compile_without_a_warning(tmp_path: Path, path: Path | None, fmi: int) -> None:
     if shutil.which("gcc") is None:
         pytest.skip("gcc is not installed")
