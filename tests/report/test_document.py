@@ -9,8 +9,9 @@ from typing import Any
 import pytest
 from browser import until
 
-from loomfmu import LoomfmuError, report
+from loomfmu import LoomfmuError, report, run
 from loomfmu.cli import main
+from loomfmu.cosim.scenes.scene import parse
 from loomfmu.report.claims import side_by_side
 from loomfmu.report.document import page
 from loomfmu.report.section import Subject
@@ -77,9 +78,10 @@ def test_foreign_text_is_shown_and_never_run(
 
 
 def test_the_command_writes_it_beside_the_trace_and_replaces_nothing_else(
-    copied: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.chdir(copied.parent)
+    monkeypatch.chdir(tmp_path)
+    run(parse("revolutions = 1\nsteps_per_revolution = 45\n[weft]\n[shaft]\n"), output="demo.h5")
     os.link("demo.h5", "new.h5")
     page = Path("demo.html")
     assert main(["report", "demo.h5"]) == 0
