@@ -142,6 +142,7 @@ def test_what_needs_a_compiler_says_so_in_one_line(
     assert not list(tmp_path.glob("**/loom.fmu*")) and not list(tmp_path.glob("**/*.html*"))
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("fmi", ["2", "3"])
 def test_native_fmus_are_written_without_a_compiler(
     python: Path, wheel: Path, tmp_path: Path, fmi: str
