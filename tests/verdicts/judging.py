@@ -189,13 +189,13 @@ def confirmed(found: Sequence[Found]) -> list[Found]:
     if not doubtful:
         return list(found)
     scene, finest = doubtful[0].scene, CONFIRMED * doubtful[0].scene.fine[-1]
-    seen = _with_samples(scene, [each.verdict.time for each in doubtful])
+    seen = with_samples(scene, [each.verdict.time for each in doubtful])
     traces = fine_runs(seen, [finest // 2 + 2, finest])  # with points of their own
     better = {id(each.truth): _truth(each.stated, traces) for each in doubtful}  # one for each bound
     return [_with_better(each, better.get(id(each.truth))) for each in found]
 
 
-def _with_samples(scene: Drawn, times: Iterable[float]) -> Drawn:
+def with_samples(scene: Drawn, times: Iterable[float]) -> Drawn:
     """The scene with samples at some times, too: points of a table of an instance that nothing needs."""
     revolution = period(parse(scene.text))
     turns = sorted({time / revolution for time in times if time > 0.0})

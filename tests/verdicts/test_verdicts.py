@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from verdicts.drawing import FAMILIES, MANY, drawn
 from verdicts.figures import HEADS, statistics
-from verdicts.judging import Found, Truth, confirmed, judged
+from verdicts.judging import Found, Truth, confirmed, fine_runs, judged, with_samples
 from verdicts.listing import listed
 
 from loomfmu import evaluate
@@ -32,6 +32,13 @@ def test_no_verdict_is_wrong(family: str) -> None:
 
 def test_the_same_seed_draws_the_same_scenes() -> None:
     assert drawn(1, "ramps", 3) == drawn(1, "ramps", 3) != drawn(2, "ramps", 3)
+
+
+@pytest.mark.parametrize("family", ["belt", "tables"])  # one of them drives inputs itself
+def test_a_truth_may_have_samples_where_a_verdict_says_the_worst_value_is(family: str) -> None:
+    scene = drawn(SEED, family, 0)
+    (trace,) = fine_runs(with_samples(scene, [0.012345, 0.0, math.nan]), [90])
+    assert abs(trace.time - 0.012345).min() < 1e-15  # a rounding of revolutions
 
 
 def one_of_a_belt() -> Found:
