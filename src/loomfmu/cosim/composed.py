@@ -161,7 +161,8 @@ class Composed:
             why = "numerical error not estimated: the run is too long"
             return {number: undecided(claim.judge(run), why) for number, claim in claims.items()}
         asked = np.array([number in claims for number in self.claims])
-        for room in (4 * steps + ROOM, max(MOST, 2 * steps)):
+        most = max(MOST, 2 * steps)
+        for room in sorted({min(4 * steps + ROOM, most), most}):
             composition = self.composition(scene, run, room)
             samples, off = composition.placed(steps, asked)
             if composition.struct.complete:
