@@ -12,6 +12,7 @@ from scipy.optimize import minimize_scalar
 import loomfmu
 from loomfmu import Evaluation, LoomfmuError, evaluate
 from loomfmu.components import COMPONENTS
+from loomfmu.cosim import composed
 from loomfmu.cosim.composed import Composed
 from loomfmu.cosim.master.grid import uniform
 from loomfmu.cosim.planning.requested import Requested
@@ -241,6 +242,13 @@ def test_a_scene_that_runs_by_seconds_is_divided_by_what_turns_in_it() -> None:
     by_turns = "revolutions = 5\nsteps_per_revolution = 1440\n[shaft]\nspeed = '3000 rpm'\n"
     (few,), (fine,) = (evaluate(parse(length + reed + judged)).claims for length in (by_seconds, by_turns))
     assert few.decided and abs(few.worst - fine.worst) <= few.error + fine.error
+
+
+def test_a_run_of_more_samples_than_are_usual_is_divided_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A run of a thousand revolutions began with so many samples that none were left to divide its steps."""
+    monkeypatch.setattr(composed, "MOST", 1000)
+    (margin, _limit), (usual, _) = (rigid(24, revolutions=turns).claims for turns in (10, 1))
+    assert abs(margin.worst - usual.worst) <= margin.error < 1e-8
 
 
 def test_a_window_may_begin_where_the_run_does() -> None:
