@@ -16,6 +16,7 @@ from scipy.interpolate import CubicSpline
 import loomfmu
 from loomfmu import LoomfmuError, fit
 from loomfmu.cli import main
+from loomfmu.cosim.prepared import Prepared
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.design.buckling import fit_length_factor
 from loomfmu.machines import table
@@ -61,6 +62,26 @@ def damper_in_last_turn(set: dict[str, Any]) -> Path:
     degrees, values = np.degrees(run.shaft_angle[360:]) - 360.0, run["damper_1.displacement"][360:]
     rows = zip(degrees, 1e3 * values, strict=True)
     return written(rows, "shaft_angle [deg],damper_1.displacement [mm]")[1]
+
+
+def test_no_place_is_run_twice(monkeypatch: pytest.MonkeyPatch) -> None:
+    short = {"revolutions": 2, "steps_per_revolution": 360, "damper_1.free_travel": "300 mm"}
+    data = damper_in_last_turn(short | {"damper_1.spring_stiffness": "7 N/mm"})
+    seen = {"evaluate": [], "derived": []}
+    for name, places in seen.items():
+        run = getattr(Prepared, name)
+
+        def counted(self: Prepared, given: Any = None, *rest: Any, run=run, places=places, **how: Any) -> Any:
+            places.append(str(given))
+            return run(self, given, *rest, **how)
+
+        monkeypatch.setattr(Prepared, name, counted)
+    vary = ["damper_1.spring_stiffness=1N/mm..20N/mm", "damper_1.damping_ratio=0..0.5"]
+    found = fit(DEMO, data, vary=vary, set=short, loss="cauchy")
+    assert found.parameters[0].value == pytest.approx(7e3, rel=1e-6)
+    evaluated, derived = seen.values()
+    assert len(set(evaluated)) == len(evaluated) and len(set(derived)) == len(derived)
+    assert found.runs == len(evaluated) - 1 + len(derived)  # one more for the warnings of the scene
 
 
 def test_published_buckling_tests_give_the_length_factor_of_the_closed_form() -> None:

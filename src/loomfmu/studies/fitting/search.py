@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ...cosim.prepared import Prepared
 from ...errors import LoomfmuError
+from ...traces import Signals
 from ..gradient import move_of
 from ..span import Span
 from .curves import Compared, compared
@@ -70,7 +71,8 @@ LOSSES = {
 }
 
 
-TRIED = 12  # scattered starts for each parameter: the best of them and the scene's own values are refined
+TRIED = 4  # scattered starts for each parameter: the best of them and the scene's own values are refined
+ROUGH = 1e-2  # relative changes at which that is said to be enough to tell the better of the two
 PROBE = 1e-3  # of the range, to see whether a parameter changes anything
 PRECISE = 1e-13  # relative changes at which the search ends
 ROUNDS = 20  # of weighing columns by what is left of them
@@ -110,6 +112,8 @@ class Search:
         self._loss, self._name = LOSSES[loss], loss
         self.runs = 0
         self._derived = loom.has_derivatives
+        self._curves: dict[tuple[float, ...], list[Compared]] = {}
+        self._derivatives: dict[tuple[float, ...], Floats] = {}
         self._weights = np.array([1.0 / (_spread(values) or 1.0) for values in data.columns.values()])
 
     def found(self) -> Found:
@@ -126,9 +130,7 @@ class Search:
         # slopes that no loss has weighed
         here = self._least_squares(ended.x, LEAST_SQUARES, max_nfev=1)
         curves = tuple(self._at(ended.x))
-        drift = np.concatenate(
-            [each.drift * weight for each, weight in zip(curves, self._weights, strict=True)]
-        )
+        drift = self._weighed([each.drift for each in curves])
         return Found(ended.x, ended.active_mask != 0, here.fun, here.jac, drift, curves)
 
     def _values(self, shares: Floats) -> tuple[list[float], float]:
@@ -139,32 +141,45 @@ class Search:
 
     def _at(self, shares: Floats) -> list[Compared]:
         """Return measured and computed values with these parameters."""
-        self.runs += 1
-        values, offset = self._values(shares)
-        run = self._loom.evaluate(settings(self._spans, values), errors="none")
-        run.check_end()
-        return compared(self._data, run.trace, offset)
+        place = tuple(shares.tolist())
+        if place not in self._curves:
+            self.runs += 1
+            values, offset = self._values(shares)
+            run = self._loom.evaluate(settings(self._spans, values), errors="none")
+            run.check_end()
+            self._curves[place] = compared(self._data, run.trace, offset)
+        return self._curves[place]
 
     def _residuals(self, shares: Floats) -> Floats:
-        return self._weighed(self._at(shares))
+        return self._weighed([each.computed - each.measured for each in self._at(shares)])
 
-    def _weighed(self, curves: Sequence[Compared]) -> Floats:
-        pairs = zip(curves, self._weights, strict=True)
-        return np.concatenate([(each.computed - each.measured) * weight for each, weight in pairs])
+    def _weighed(self, parts: Sequence[Floats]) -> Floats:
+        """The parts that belong to each signal, by its weight, in the rows of all."""
+        return np.concatenate([weight * each for weight, each in zip(self._weights, parts, strict=True)])
 
     def _slopes(self, shares: Floats) -> Floats:
         """The derivatives of the residuals by the shares, shape (n, p)."""
+        place = tuple(shares.tolist())
+        if place not in self._derivatives:
+            self._derivatives[place] = self._derived_at(shares)
+        return self._weighed([self._derivatives[place][rows] for rows in self._data.rows.values()])
+
+    def _derived_at(self, shares: Floats) -> Floats:
+        """The derivatives of the computed values."""
         values, offset = self._values(shares)
         pairs = [pair for pair in zip(self._spans, values, strict=True) if pair[0].varied.targets]
         moves = [move_of(self._loom.scene, span.varied, value) for span, value in pairs]
         found = self._loom.derived(settings(self._spans, values), moves)
         self.runs += 1
+
+        def computed(trace: Signals) -> Floats:
+            return np.concatenate([each.computed for each in compared(self._data, trace, offset)])
+
         slopes = {
-            span.key: each.slope(lambda trace: self._weighed(compared(self._data, trace, offset)))
+            span.key: each.slope(computed)
             for (span, _value), each in zip(pairs, found.directions, strict=True)
         }
-        curves = zip(compared(self._data, found.recording, offset), self._weights, strict=True)
-        drift = np.concatenate([each.drift * weight for each, weight in curves])
+        drift = np.concatenate([each.drift for each in compared(self._data, found.recording, offset)])
         columns = [(span.high - span.low) * slopes.get(span.key, drift) for span in self._spans]
         return np.stack(columns, axis=1)
 
@@ -209,10 +224,12 @@ class Search:
 
     def _refined(self, starts: Sequence[Floats]) -> Any:
         """The best of the searches from these starts."""
-        ends = [self._least_squares(start, self._name) for start in starts]
-        return min(ends, key=lambda each: float(each.cost))
+        if len(starts) > 1:
+            ends = [self._least_squares(start, self._name, ROUGH) for start in starts]
+            starts = [min(ends, key=lambda each: float(each.cost)).x]
+        return self._least_squares(starts[0], self._name)
 
-    def _least_squares(self, start: Floats, loss: str, **options: Any) -> Any:
+    def _least_squares(self, start: Floats, loss: str, precision: float = PRECISE, **options: Any) -> Any:
         from scipy.optimize import least_squares
 
         return least_squares(
@@ -220,8 +237,8 @@ class Search:
             np.clip(start, 1e-9, 1.0 - 1e-9),
             jac=self._slopes if self._derived else "3-point",
             bounds=(0.0, 1.0),
-            xtol=PRECISE,
-            ftol=PRECISE,
+            xtol=precision,
+            ftol=precision,
             gtol=PRECISE,
             loss=loss,
             f_scale=LOSSES[loss].scale,
