@@ -2,11 +2,12 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from loomfmu import LoomfmuError, gradient
 from loomfmu.cosim.prepared import Prepared
-from loomfmu.studies.gradient import number_of
+from loomfmu.studies.gradient import move_of, number_of
 from loomfmu.sweeps.varied import varied
 
 SIMS = Path(__file__).parents[2] / "sims"
@@ -81,6 +82,22 @@ def test_derivatives_are_those_that_differences_of_runs_approach(case):
             scale = [1e-12 * abs(number) / step for number in found.numbers]
             for got, wanted, rounding in zip(found.si[:, column], differences, scale, strict=True):
                 assert got == pytest.approx(wanted, rel=near, abs=rounding)
+
+
+def test_at_a_kink_the_derivative_is_that_towards_greater_values():
+    with Prepared(SIMS / "wl680_3600.toml", None, "native", ("belt.margin",), ()) as loom:
+        found = loom.derived({}, [move_of(loom.scene, varied(loom.scene, "shaft.speed"))])
+    (direction,), here = found.directions, found.recording["belt.margin"]
+
+    def folded(trace):
+        kink = np.abs(trace["belt.margin"] - here)
+        return np.stack([kink, -kink])
+
+    smooth = direction.slope(lambda trace: trace["belt.margin"])
+    # samples move by 8e-6 of the largest, so that rounding of them counts by 1e-11 of the largest slope
+    near = 1e-9 * np.max(np.abs(smooth))
+    np.testing.assert_allclose(direction.slope(folded), [np.abs(smooth), -np.abs(smooth)], atol=near)
+    assert np.count_nonzero(smooth) > 100
 
 
 def test_an_extreme_that_is_held_has_a_derivative_though_its_moved_samples_rise_and_fall():
