@@ -345,6 +345,15 @@ def test_a_scene_judges_an_expression_with_its_error() -> None:
 
 
 @pytest.mark.parametrize(
+    "signal", ["heald_1.lift * 1e308 * heald_2.lift * 1e308 / (1 mm)", "-1e308 * heald_1.lift / 1e-308"]
+)
+def test_numbers_beyond_those_of_a_float_are_told_in_the_note_alone(signal: str) -> None:
+    """Turning such a factor into a float was an error, and numpy's warnings were printed."""
+    (found,) = verdicts(LOOM, claim("below", signal=signal, bound="2 m"), revolutions=2)
+    assert not found and "is not finite everywhere" in found.note
+
+
+@pytest.mark.parametrize(
     ("signal", "why"),
     [
         ("heald_1.lift - heald_9.lift", "there is no instance 'heald_9'; did you mean"),

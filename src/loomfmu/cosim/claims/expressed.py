@@ -33,7 +33,7 @@ class Expressed(Extended):
     def __init__(self, run: Signals, expression: Expression):
         super().__init__(run, {}, {}, expression.unit)
         self._node, self._display, self.why = expression.node, expression.display(run.display), ""
-        with np.errstate(over="ignore", invalid="ignore"):  # the verdict says what is not finite
+        with _not_finite():
             values, *rates = self._jet(self._node)
         names = [str(expression), *(f"{each}{expression}" for each in RATES)]
         self._made = dict(zip(names, [values, *rates], strict=False))
@@ -123,7 +123,8 @@ class Expressed(Extended):
         for name in self._node.signals:
             values = np.asarray(self._run[name], dtype=float)
             off[name] = share * np.abs(values) + scatter * np.abs(values - values[0])
-        return float(np.max(self._off(self._node, off)[1]))
+        with _not_finite():
+            return float(np.max(self._off(self._node, off)[1]))
 
     def _others(self, name: str) -> dict[str, str]:
         """Add what says when the expression is known and how far it is off; return these by their roles."""
@@ -139,7 +140,8 @@ class Expressed(Extended):
             zero = np.zeros(len(self.time))
             off = {each: np.abs(self._run[other]) if other else zero for each, other in errors.items()}
             found["error"] = f"error of {name}"
-            self._made[found["error"]] = self._off(self._node, off)[1]
+            with _not_finite():
+                self._made[found["error"]] = self._off(self._node, off)[1]
         return found
 
     def beside(self, signal: str, role: str) -> str | None:
@@ -147,6 +149,11 @@ class Expressed(Extended):
         if signal == next(iter(self._made)):
             return self._beside.get(role)
         return super().beside(signal, role)
+
+
+def _not_finite() -> np.errstate:
+    """Say nothing of numbers that are not finite: the verdict does."""
+    return np.errstate(over="ignore", invalid="ignore")
 
 
 def _sum(parts: list[Jet]) -> Jet:
@@ -158,7 +165,7 @@ def as_float(exact: Fraction) -> float:
     try:
         return float(exact)
     except OverflowError:  # the verdict says what is not finite
-        return math.copysign(math.inf, exact)
+        return math.inf if exact > 0 else -math.inf
 
 
 def _product(one: Jet, other: Jet) -> Jet:
