@@ -264,6 +264,18 @@ def test_a_range_shows_a_dip_beside_the_bound_of_its_claim(
     assert bound.get_label() == "bound 0.1" and set(bound.get_ydata()) == {0.1}
 
 
+def test_a_picture_of_two_traces_has_the_bounds_of_both(
+    copied: Path, fast: Trace, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The bound of the first alone let the second seem to hold."""
+    drawn: list[Any] = []
+    monkeypatch.setattr(pictures, "save", lambda figure, path, *_more: (drawn.append(figure), path)[1])
+    assert main(["plot", str(copied), str(fast.path), "belt.speed_limit", "belt.margin"]) == 0
+    speeds, margins = ({each.get_label() for each in axes.get_lines()} for axes in drawn[0].axes)
+    of = {f"bound 600 rev/min\nof {copied.name}", f"bound 700 rev/min\nof {fast.path.name}"}
+    assert of <= speeds and "bound 0.1" in margins
+
+
 def test_a_legend_covers_no_curve(copied: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     drawn: list[Any] = []
     monkeypatch.setattr(pictures, "save", lambda figure, path, *_more: (drawn.append(figure), path)[1])

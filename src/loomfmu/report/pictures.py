@@ -1,7 +1,7 @@
 """Single pictures: what files they may be, and plots of signals as such files."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from fnmatch import fnmatchcase
 from io import BytesIO
 from pathlib import Path
@@ -168,17 +168,18 @@ def _check_shown(limits: tuple[float, float], values: tuple[float, float], name:
         raise LoomfmuError(f"ylim: no value of {name} is within; they are {ends}")
 
 
-def _bounds(trace: Trace, names: Sequence[str]) -> list[Verdict]:
-    """The verdicts whose bounds are drawn: those on the signals, or on their held extremes."""
-    return [
-        each
-        for each in trace.verdicts
-        if math.isfinite(each.bound)
-        and (
-            name := next((n for n in (each.signal, plotting.curve_of(trace, each.signal)) if n in names), "")
-        )
-        and each.unit == trace.unit(name)
-    ]
+def _bounds(traces: Sequence[Trace], names: Sequence[str]) -> dict[str, Verdict]:
+    """The verdicts on signals, or on their held extremes, by what is said of their bounds."""
+    found: dict[str, dict[str, Verdict]] = {}
+    for label, trace in zip(labels(traces), traces, strict=True):
+        for each in trace.verdicts:
+            curve = next((n for n in (each.signal, plotting.curve_of(trace, each.signal)) if n in names), "")
+            if curve and math.isfinite(each.bound) and each.unit == trace.unit(curve):
+                found.setdefault(f"bound {each.shown(each.bound)}", {}).setdefault(label, each)
+    return {
+        text if len(of) == len(traces) else f"{text}\nof {listed(of)}": next(iter(of.values()))
+        for text, of in found.items()
+    }
 
 
 @plotting.fixed_style()
@@ -202,29 +203,31 @@ def _figure(
         plotting.draw(axes, curves, over, fold, shown)
         if limits:
             _check_shown(limits, axes.dataLim.intervaly, names[0])
-        _judge(axes, _bounds(traces[0], names), limits)
+        _judge(axes, _bounds(traces, names), limits)
         axes.label_outer()
     figure.suptitle("\n".join(fill(each, LETTERS) for each in title.split("\n")), fontsize=11)
     return figure
 
 
-def _judge(axes: Any, verdicts: Sequence[Verdict], limits: tuple[float, float] | None) -> None:
+def _judge(axes: Any, bounds: Mapping[str, Verdict], limits: tuple[float, float] | None) -> None:
     """Draw bounds with their failing sides, and choose the range around them where none is given."""
     low, high = limits or axes.get_ylim()
     lowest, highest = axes.dataLim.intervaly
-    if verdicts and not limits and math.isfinite(lowest):
-        low, high = plotting.around(lowest, highest, verdicts)
+    if bounds and not limits and math.isfinite(lowest):
+        low, high = plotting.around(lowest, highest, list(bounds.values()))
     axes.set_ylim(low, high)
     ends = ("up", highest, highest > high), ("down", lowest, lowest < low)
     beyond = [f"{way} to {float(f'{end:.4g}'):.10g}" for way, end, hidden in ends if hidden]
     if beyond and not limits:
         told = f"not all is drawn: values go {' and '.join(beyond)}"
         axes.text(1.0, 1.01, told, transform=axes.transAxes, ha="right", va="bottom", fontsize=8)
-    for text, each in {f"bound {each.shown(each.bound)}": each for each in verdicts}.items():
+    fails = "fails"  # once in the legend
+    for text, each in bounds.items():
         bound = each.displayed(each.bound)
         axes.axhline(bound, color=BOUND, linestyle=":", linewidth=1.5, label=text)
         if each.sense:
             side = (low, min(bound, high)) if each.sense > 0 else (max(bound, low), high)
-            axes.axhspan(*side, color=plotting.FAILING, linewidth=0, zorder=0, label="fails")
-    if verdicts:
+            axes.axhspan(*side, color=plotting.FAILING, linewidth=0, zorder=0, label=fails)
+            fails = ""
+    if bounds:
         plotting.legend(axes)

@@ -154,10 +154,11 @@ def _signal(
         "about": about,
         "summaries": summaries,
     }
+    whose = f" of {labels(subject.traces)[subject.shown]}" if len(subject.traces) > 1 else ""
     bounds = [
         {
             "value": each.bound / factor,
-            "text": f"bound {each.shown(each.bound)}",
+            "text": f"bound {each.shown(each.bound)}{whose}",
             "holds": each.holds,
             "sense": each.sense,
             "worst": each.worst / factor,
