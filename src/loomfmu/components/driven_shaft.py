@@ -273,13 +273,15 @@ class DrivenShaft(Component):
 
     def loads(self) -> tuple[float, float, float]:
         """Torque of all mechanisms; the part whose work they state, and this work."""
+        torque = list(self.torque)
+        use_work = list(self.use_work)
         load = 0.0
         coupled = 0.0
         work = 0.0
         for index in range(LOADS):
-            load += self.torque[index]
-            if self.use_work[index]:
-                coupled += self.torque[index] - self.passed_torque[index]
+            load += torque[index]
+            if use_work[index]:
+                coupled += torque[index] - self.passed_torque[index]
                 work += self.work[index]
         return load, coupled, work
 
