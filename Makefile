@@ -18,12 +18,16 @@ VALIDATE := PYTHONPATH=tests $(BIN)/python -m validation
 # tests start hundreds of processes: each would compile the package again, which takes longer than most that it does
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test test-all coverage check stress attack verdicts bench foreign docs site validation wheel runtime pins clean
+.PHONY: demo test tests test-all coverage check stress attack verdicts bench foreign docs site validation wheel runtime pins clean
 
 demo: .venv/installed
 	$(BIN)/loomfmu run sims/wl680_3600.toml
 
-test: .venv/installed-for-tests check
+# both at once: mypy takes one core
+test: .venv/installed-for-tests
+	$(MAKE) --no-print-directory --jobs=2 check tests
+
+tests: .venv/installed-for-tests
 	$(BIN)/python -m pytest $(PARALLEL)
 
 # all tests, with all of Hypothesis' examples: the slow ones, stress and the attack as well. Hours
