@@ -259,22 +259,15 @@ def test_a_loop_of_ours_beside_an_fmu_of_others_is_iterated_or_undecided(tmp_pat
     ("steps", "speed", "stiffness", "restitution", "play", "judged", "why"),
     [
         # 0.79 m/s was 0.91 m/s with fine steps
-        (
-            720,
-            678.6,
-            3351,
-            0.9,
-            1.35,
-            {"signal": "play_1.hardest_blow", "bound": "0.85 m/s"},
-            "is 37, 39 or 41",
-        ),
+        (720, 678.6, 3351, 0.9, 1.35, {"signal": "play_1.hardest_blow", "bound": "0.85 m/s"},
+         "is 37, 39 or 41"),
         # 117 blows each time; 0.0194 N.s is 0.0179 N.s with fine steps
         (
             *(180, 416.96, 2085, 0.92, 2.49),
             *({"signal": "play_1.total_impulse", "bound": 0.0185}, "counts blows at other times"),
         ),
     ],
-)
+)  # fmt: skip
 def test_blows_that_other_steps_count_otherwise_decide_nothing(
     steps: int,
     speed: float,

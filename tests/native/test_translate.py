@@ -146,15 +146,11 @@ def test_translations_repeat(tools):
     ("component", "function", "line", "reason"),
     [
         (toys.UsesDictionary, "step", "values = {0: time}", "Dict is not in the subset"),
-        (
-            toys.DependsOnOrder,
-            "step",
-            "self.total = self.value + self.counted(time)",
-            "counted() changes what the rest of this line uses: write two statements",
-        ),
+        (toys.DependsOnOrder, "step", "self.total = self.value + self.counted(time)",
+         "counted() changes what the rest of this line uses: write two statements"),
         (toys.ChangesType, "step", "count = 0.5 * time", "count is int and becomes float"),
     ],
-)
+)  # fmt: skip
 def test_what_does_not_translate_is_named_with_its_place(tools, component, function, line, reason):
     with pytest.raises(TranslationError) as caught:
         translate(component)

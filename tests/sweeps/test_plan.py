@@ -224,15 +224,11 @@ IN_HEAD = [
     ({'"Swept"': ""}, "not valid TOML"),
 ]
 IN_SCENE = [
-    (
-        '[[claims]]\nkind = "above"\nsignal = "belt.margn"\nbound = 0\n',
-        "belt has no output 'margn'; did you mean 'margin'",
-    ),
-    (
-        '\n[inputs]\n"belt.guide_clearance" = [[0, "0.3 mm"], [1, "1 mm"]]\n',
-        "belt.guide_clearance cannot be set, it is driven along a table",
-    ),
-]
+    ('[[claims]]\nkind = "above"\nsignal = "belt.margn"\nbound = 0\n',
+     "belt has no output 'margn'; did you mean 'margin'"),
+    ('\n[inputs]\n"belt.guide_clearance" = [[0, "0.3 mm"], [1, "1 mm"]]\n',
+     "belt.guide_clearance cannot be set, it is driven along a table"),
+]  # fmt: skip
 
 
 @pytest.mark.parametrize(

@@ -384,27 +384,17 @@ CASES = {
     "no zip": (["run", "text.ssp"], "text.ssp: cannot be read (File is not a zip file)"),
     "none": (["run", "none.ssp"], "none.ssp: cannot be read (No such file or directory)"),
     "no structure": (["run", "empty.ssp"], "empty.ssp: SystemStructure.ssd is not in the package"),
-    "no XML": (
-        ["run", "broken.ssp"],
-        "broken.ssp: SystemStructure.ssd: not valid XML (unclosed token: line 1, column 0)",
-    ),
-    "set": (
-        ["run", "good.ssp", "--set", "belt.travl=1"],
-        "good.ssp: belt.travl is unknown; did you mean 'travel'?",
-    ),
-    "set nobody": (
-        ["run", "good.ssp", "--set", "bel.travel=1"],
-        "good.ssp: bel.travel: the scene has no instance 'bel'; did you mean 'belt'?",
-    ),
-    "platform": (
-        ["export", str(DEMO), "--ssp", "x.ssp", "--platform", "linx64"],
-        "there is no platform 'linx64'; did you mean 'linux64'?",
-    ),
-    "directory": (
-        ["export", str(DEMO), "--ssp", "text.ssp/x.ssp", "--flavour", "live"],
-        "text.ssp/x.ssp: cannot be written (text.ssp is not a directory)",
-    ),
-}
+    "no XML": (["run", "broken.ssp"],
+        "broken.ssp: SystemStructure.ssd: not valid XML (unclosed token: line 1, column 0)"),
+    "set": (["run", "good.ssp", "--set", "belt.travl=1"],
+        "good.ssp: belt.travl is unknown; did you mean 'travel'?"),
+    "set nobody": (["run", "good.ssp", "--set", "bel.travel=1"],
+        "good.ssp: bel.travel: the scene has no instance 'bel'; did you mean 'belt'?"),
+    "platform": (["export", str(DEMO), "--ssp", "x.ssp", "--platform", "linx64"],
+        "there is no platform 'linx64'; did you mean 'linux64'?"),
+    "directory": (["export", str(DEMO), "--ssp", "text.ssp/x.ssp", "--flavour", "live"],
+        "text.ssp/x.ssp: cannot be written (text.ssp is not a directory)"),
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("case", CASES)

@@ -241,19 +241,14 @@ def test_a_claim_that_cannot_be_judged_says_why() -> None:
     [
         ({"vary": "shaft.speed", "from_": "900 rpm", "to": 5}, "shaft.speed: the range from 900 rev/min to"),
         ({"vary": "shaft.speed=5rpm..5rpm"}, "shaft.speed: the range from 5 rev/min to 5 rev/min is empty"),
-        (
-            {"vary": "shaft.speed", "from_": "1300 rpm"},
-            "shaft.speed: the range from 1300 rev/min to 1200 rev/min is empty (lower end given, upper end"
-            " twice the scene's 600 rev/min); give both ends",
-        ),
+        ({"vary": "shaft.speed", "from_": "1300 rpm"},
+         "shaft.speed: the range from 1300 rev/min to 1200 rev/min is empty (lower end given, upper end"
+         " twice the scene's 600 rev/min); give both ends"),
         ({"vary": "shaft.speed=300rpm"}, "vary shaft.speed=300rpm: '300rpm' is not a range; write it as"),
         ({"vary": "shaft.speed=1..2", "to": 3}, "vary shaft.speed=1..2: the range is given twice"),
         ({"vary": "shaft.speed", "from_": "3 mm"}, "shaft.speed: '3 mm' is in mm, which does not fit rad/s"),
         ({"vary": "shaft.speed", "to": "20000 rpm"}, "shaft.speed = 20000 rev/min is outside [-9549"),
-        (
-            {"vary": "shaft.speed", "from_": "-9 rpm"},
-            "shaft.speed = -9 rev/min: claim 'the loom runs",
-        ),
+        ({"vary": "shaft.speed", "from_": "-9 rpm"}, "shaft.speed = -9 rev/min: claim 'the loom runs"),
         ({"vary": "shaft.sped"}, "shaft.sped is unknown; did you mean 'speed'?"),
         ({"vary": "belt.travel"}, "belt.travel cannot be set, it is wired to weft.travel"),
         ({"vary": "belt.margin"}, "belt.margin is an output of BeltMonitor and cannot be set"),
@@ -268,13 +263,10 @@ def test_a_claim_that_cannot_be_judged_says_why() -> None:
         ({"vary": ["shaft.speed", "shaft.speed=1..2"]}, "shaft.speed and shaft.speed both set shaft.speed"),
         ({"vary": ["shaft.speed", "heald.stroke"], "rows": 1}, "rows = 1 must be a whole number from 2 to"),
         ({"vary": "shaft.speed", "rows": 4}, "rows = 4 is how many values of a second variable are taken"),
-        (
-            {"vary": "damper.spring_stiffness=1..20N/mm"},
-            "vary damper.spring_stiffness: '1..20N/mm': 1 has",
-        ),
+        ({"vary": "damper.spring_stiffness=1..20N/mm"}, "vary damper.spring_stiffness: '1..20N/mm': 1 has"),
         ({"vary": "weft.speed=300rpm..900rpm"}, "weft.speed has no effect: set weft.follow_shaft = false"),
     ],
-)
+)  # fmt: skip
 def test_what_cannot_be_searched_is_refused_in_one_line(given: dict[str, Any], said: str) -> None:
     short = {"steps_per_revolution": 90, "revolutions": 1}
     with pytest.raises(LoomfmuError) as raised:

@@ -44,18 +44,13 @@ def test_limits_are_printed(capsys: pytest.CaptureFixture[str]) -> None:
     ("options", "said"),
     [
         ("=40..80", "from 381.9719 to 763.9437 rev/min (given; numbers without a unit are rad/s)"),
-        (
-            " --from 500rpm",
-            "from 500 to 1200 rev/min (lower end given, upper end twice the scene's 600 rev/min)",
-        ),
-        (
-            " --to 500rpm",
-            "from 300 to 500 rev/min (lower end half the scene's 600 rev/min, upper end given)",
-        ),
+        (" --from 500rpm",
+         "from 500 to 1200 rev/min (lower end given, upper end twice the scene's 600 rev/min)"),
+        (" --to 500rpm", "from 300 to 500 rev/min (lower end half the scene's 600 rev/min, upper end given)"),
         # a value with a minus was taken for an option
         (" --vary=shaft.start_angle --from -10deg --to -.5deg", "from -10 to -0.5 deg (given)"),
     ],
-)
+)  # fmt: skip
 def test_the_heading_says_where_the_range_comes_from(
     options: str, said: str, capsys: pytest.CaptureFixture[str]
 ) -> None:

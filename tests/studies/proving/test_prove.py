@@ -177,10 +177,8 @@ def test_a_loom_that_turns_backwards_is_proven_at_its_own_angles(loom: Scene) ->
 @pytest.mark.parametrize(
     ("asked", "message"),
     [
-        (
-            {"over": ["shaft.speed=640rpm..300rpm"]},
-            "shaft.speed: the range from 640 rev/min to 300 rev/min is empty",
-        ),
+        ({"over": ["shaft.speed=640rpm..300rpm"]},
+         "shaft.speed: the range from 640 rev/min to 300 rev/min is empty"),
         ({"over": ["heald_1.pattern_length=2..4"]}, "is not a real number"),
         ({"claims": ["margins"]}, "the scene has no claim"),
         ({"over": ["shaft.speed"]}, "a proof over shaft.speed needs a range"),
@@ -188,13 +186,11 @@ def test_a_loom_that_turns_backwards_is_proven_at_its_own_angles(loom: Scene) ->
         ({"over": "shaft.speed=640rpm..300rpm"}, "is empty"),
         ({"boxes": 0}, "boxes = 0 is not a number of boxes"),
         ({"over": ["shaft.start_angle=0deg..10deg"]}, "all shaft angles are proven"),
-        (
-            {"over": ["heald.stroke=97mm..99mm"], "set": {"heald_2.stroke": "105 mm"}},
-            "heald_2.stroke keeps a value of its own",
-        ),
+        ({"over": ["heald.stroke=97mm..99mm"], "set": {"heald_2.stroke": "105 mm"}},
+         "heald_2.stroke keeps a value of its own"),
         ({"over": ["belt.head_mass=1g..2g", "belt.head_mass=2g..3g"]}, "both set"),
     ],
-)
+)  # fmt: skip
 def test_bad_input_is_refused_in_a_line(loom: Scene, asked: dict[str, list[str]], message: str) -> None:
     with pytest.raises(LoomfmuError, match=message) as caught:
         prove(loom, **asked)  # type: ignore[arg-type]

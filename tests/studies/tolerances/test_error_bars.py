@@ -75,15 +75,11 @@ def test_a_normal_distribution_without_ends_has_no_worst_case(tmp_path: Path) ->
     ("scene", "tolerances", "number", "why"),
     [
         ("damper", '"damper.damping_ratio" = [0, 0.2]', 0, "it counts or decides, so it has no derivative"),
-        (
-            "light_shaft",
-            '"weft.belt_length" = ["2.9 m", "3.1 m"]',
-            0,
-            "closes a loop, which has no derivatives",
-        ),
+        ("light_shaft", '"weft.belt_length" = ["2.9 m", "3.1 m"]', 0,
+         "closes a loop, which has no derivatives"),
         (DEMO, '"shaft.speed" = ["580 rpm", "590 rpm"]', 1, "600 rev/min is outside its tolerance"),
     ],
-)
+)  # fmt: skip
 def test_a_claim_without_a_bar_says_why(
     tmp_path: Path, scene: str, tolerances: str, number: int, why: str
 ) -> None:
