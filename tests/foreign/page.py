@@ -26,9 +26,9 @@ LATE = """
 ## The demo as a package
 
 The same differences of the demo, over all steps of a revolution, for the outputs that are off by {seen:g} or
-more in the first column, the worst of all instances of a mechanism. Each wire is a step late. What jumps at a
-blow of a damper against its stop is off by the whole jump at the one or two samples by which the blow comes
-late, however small the steps; all other differences shrink with the step.
+more in the first column, the worst of all instances of a mechanism. Each wire is a step late. What jumps, as
+at a blow of a damper against its stop or where a speed limit begins, is off by the jump at the one or two
+samples by which it comes late, however small the steps. What does not jump is off by less with smaller steps.
 """
 CHECKERS = """
 ## Checkers
