@@ -107,10 +107,10 @@ def test_choices_bound_their_number():
     [
         ({"speed": 120.0}, "Pump.speed = 1145.916 rev/min is outside [0, 954.9297] rev/min"),
         ({"speed": -1e-9}, "Pump.speed = -9.549297e-09 rev/min is outside [0, 954.9297] rev/min"),
-        ({"speed": math.nan}, "Pump.speed = nan rev/min is outside [0, 954.9297] rev/min"),
+        ({"speed": math.nan}, "Pump.speed = nan is not a finite number"),
         ({"load": 1001.0}, "Pump.load = 100100 cN is outside [-inf, 100000] cN"),
-        ({"load": -math.inf}, "Pump.load = -inf cN is outside [-inf, 100000] cN"),
-        ({"angle": math.inf}, "Pump.angle = inf rad is outside [-inf, inf] rad"),
+        ({"load": -math.inf}, "Pump.load = -inf is not a finite number"),
+        ({"angle": math.inf}, "Pump.angle = inf is not a finite number"),
         ({"kind": 0}, "Pump.kind = 0 must be 1 (gear), 2 (vane) or 3 (screw)"),
     ],
 )

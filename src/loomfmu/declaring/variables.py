@@ -138,7 +138,9 @@ class Variable:
         """Return the fault of a value, or an empty text."""
         low = -math.inf if self.minimum is None else self.minimum
         high = math.inf if self.maximum is None else self.maximum
-        if low <= value <= high and math.isfinite(value):
+        if not math.isfinite(value):
+            return f"{self.name} = {value} is not a finite number"
+        if low <= value <= high:
             return ""
         if self.choices:
             return (
