@@ -37,17 +37,27 @@ def deflection(turn: float, clearance: float, guide: float, length: float) -> fl
     return float(np.abs(a * np.sin(turn * PLACES) + (offset - a * math.sin(turn)) * PLACES).max())
 
 
-def length_factor(clearance: float, guide: float, length: float) -> float:
-    """Length factor of the load at which the deflection is `ALLOWED`: pi over the turn.
+def length_factor(clearance: float, guide: float, length: float, allowed: float = ALLOWED) -> float:
+    """Length factor of the load at which the deflection is that large: pi over the turn.
 
     Up to Euler's load of pinned ends a straight belt stays straight within its free play.
     """
     if clearance == 0.0:
         return math.pi / CLAMPED
-    if deflection(math.pi, clearance, guide, length) >= ALLOWED:
+    if deflection(math.pi, clearance, guide, length) >= allowed:
         return 1.0
     below = CLAMPED * (1.0 - 1e-12)
-    turn: float = brentq(lambda u: deflection(u, clearance, guide, length) - ALLOWED, math.pi, below)
+    turn: float = brentq(lambda u: deflection(u, clearance, guide, length) - allowed, math.pi, below)
+    return math.pi / turn
+
+
+def sprung_factor(stiffness: float, length: float) -> float:
+    """Length factor of a belt that a spring in its guide keeps from turning [N.m], pinned at its head."""
+    share = stiffness * length / BeltDynamics().bending_stiffness
+    pinned, clamped = math.pi * (1.0 + 1e-12), CLAMPED * (1.0 - 1e-12)
+    turn: float = brentq(
+        lambda u: u * u * math.sin(u) + share * (math.sin(u) - u * math.cos(u)), pinned, clamped
+    )
     return math.pi / turn
 
 
@@ -78,15 +88,16 @@ def length_factor_in_motion(clearance: float, guide: float, length: float) -> fl
     return math.pi / (turn - (bent(turn, *case) - ALLOWED) / slope)
 
 
+def measured_load(clearance: str, length: float) -> float:
+    """A load of Table 2, printed in whole newtons: by a column, such as `c_0.30`, and a free length [m]."""
+    rows = table("belt_buckling_experiment")
+    return next(float(row[clearance]) for row in rows if float(row["free_length_mm"]) == round(1e3 * length))
+
+
 @cache
 def measured(clearance: str, length: float) -> tuple[float, float]:
-    """Lowest and highest length factor of a load of Table 2, which is printed in whole newtons.
-
-    `clearance` is a column of the table, such as `c_0.30`, `length` the free length [m].
-    """
-    rows = table("belt_buckling_experiment")
-    load = next(float(row[clearance]) for row in rows if float(row["free_length_mm"]) == round(1e3 * length))
-    stiffness = BeltDynamics().bending_stiffness
+    """Lowest and highest length factor of a `measured_load`, which is rounded."""
+    load, stiffness = measured_load(clearance, length), BeltDynamics().bending_stiffness
     low, high = (math.pi / length * math.sqrt(stiffness / (load + half)) for half in (0.5, -0.5))
     return low, high
 

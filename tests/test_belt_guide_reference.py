@@ -11,8 +11,12 @@ from belt_guide_reference import (
     length_factor,
     length_factor_in_motion,
     measured,
+    sprung_factor,
 )
+from belt_reference import FiniteElements
 from scipy.integrate import solve_bvp
+from scipy.linalg import eigh
+from validation.computed import belt_guide
 
 
 @pytest.mark.parametrize("turn", [3.2, 3.8, 4.3])
@@ -79,3 +83,26 @@ def test_no_guide_fits():
     for guide in (shortest, longest):
         low, high = measured("c_0.50", 0.414)
         assert low - 1e-9 < length_factor(0.5e-3, guide, 0.414) < high + 1e-9
+
+
+@pytest.mark.parametrize("stiffness", [1e-6, 0.5, 2.8, 1e6])
+def test_a_spring_in_the_guide_holds_a_belt_as_finite_elements_say(stiffness):
+    length = 0.414
+    elements = FiniteElements(
+        lambda _t: (length, 0.0, 0.0), lambda x, _l: 0.0 * x, stiffness=0.25, elements=20
+    )
+    bending, squeezed = elements.matrices(length)
+    bending[0, 0] += stiffness / length**3  # the first node is the slope at the guide times the length
+    load = eigh(bending, squeezed, eigvals_only=True)[0]
+    assert sprung_factor(stiffness, length) == pytest.approx(np.pi / length * np.sqrt(0.25 / load), rel=1e-5)
+
+
+@pytest.mark.parametrize("way", ["deflection", "shape"])
+def test_no_guide_fits_the_measured_loads_better_than_the_one_in_the_report(way):
+    best = belt_guide.guide(way)
+
+    def off(guide):
+        loads = [(column, each) for column in belt_guide.COLUMNS for each in belt_guide.LENGTHS]
+        return sum(belt_guide.beyond(belt_guide.with_play(way, guide, *case), *case) ** 2 for case in loads)
+
+    assert off(best) <= min(off(guide) for guide in np.linspace(0.02, 0.1, 41)) + 1e-9
