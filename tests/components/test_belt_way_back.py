@@ -13,6 +13,7 @@ from belt_reference import FiniteElements
 from compiled import in_c
 
 from loomfmu.components.belt_dynamics import BeltDynamics
+from loomfmu.declaring.variables import variables_of
 from loomfmu.physics.belt_moving import Belt, Instant
 
 LIMITS = {"WL680-3600": 681.8, "WL800-3600": 553.3, "WL450-4600": 212.6, "WL450-5400": 137.5}  # rev/min
@@ -104,3 +105,13 @@ def test_finite_elements_stay_within_what_a_belt_may_reach_on_its_way_back(belt_
         )
     ).max()
     assert 0.1 * belt.largest_at_risk < found <= belt.largest_at_risk
+
+
+def test_a_belt_is_let_go_live_as_natively_to_the_same_bits(belt_in_c):
+    live, native = (Loom(each, 600.0, 180, 250.0, bow=1e-3) for each in (BeltDynamics, belt_in_c))
+    for loom in (live, native):
+        loom.belt.largest_at_risk = 5e-3  # as after a stroke
+        loom.turn_to(266.0)
+        assert loom.belt.released and loom.belt.largest_known
+    for variable in variables_of(BeltDynamics):
+        assert getattr(live.belt, variable.name) == getattr(native.belt, variable.name), variable.name
