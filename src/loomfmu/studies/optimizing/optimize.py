@@ -85,7 +85,9 @@ def optimize(
         stack.enter_context(owned(files, "study", study.title, fingerprint, restart, inputs))
         place = cluster(scheduler) if scheduler else local(study.scene, processes, generation(study))
         pool = stack.enter_context(closing(place))
-        advance = stack.enter_context(progress_bar(study.title, expected(study), wanted=progress))
+        advance = stack.enter_context(
+            progress_bar(study.title, expected(study, loom.has_derivatives), wanted=progress)
+        )
         runs = stack.enter_context(closing(Runs(study, job, pool, files.runs, limits, advance, loom)))
         return found_of(runs, searched(runs, own, path), verdicts, files)
 

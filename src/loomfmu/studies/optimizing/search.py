@@ -23,16 +23,20 @@ SAVED = 300  # designs of a search everywhere in place of which derivatives star
 APART = 0.2  # of the ranges: how far such starts lie from each other
 ROUGH = 1e-3  # of the ranges: how near to an end of its way each start is led; the best goes to that end
 SPREAD = 4  # designs of each combination of options from which the best one starts
+CLIMBED = 10  # runs from a start with derivatives, as a progress bar expects them
 EXPECTED = 60  # runs of that for each variable, as a progress bar expects them
 BETWEEN = 4  # a design within a front has that part of the runs of one at its ends
 ALIKE = 1e-7  # of a goal: what the search near a design leaves open
 TIE = 1e-4  # weight of the sum of all goals beside the largest: none is worse than it must be
 
 
-def expected(study: Study) -> int:
-    """Return roughly how many designs a search will run."""
+def expected(study: Study, derived: bool) -> int:
+    """Return roughly how many designs a search will run, with derivatives or without."""
     if study.enumerable:
         return study.combinations
+    if _climbs(study, derived):
+        kinds, starts = len(_weights(study)), max(study.combinations, study.search["runs"] // SAVED)
+        return generation(study) + SPREAD * study.combinations + CLIMBED * starts * kinds
     near = EXPECTED * len(study.continuous) * min(study.combinations, POLISHED)
     inside = len(_weights(study)) - len(study.goals) if len(study.goals) > 1 else 0
     ends = (study.search["runs"] + near) * len(study.goals)
@@ -48,7 +52,7 @@ def searched(runs: Runs, own: Point, path: Path) -> list[Design]:
     check_effects(runs, first, path)
     if study.enumerable:
         runs.at(list(product(*(map(float, range(len(each.options))) for each in study.variables))))
-    if _climbs(runs):
+    if _climbs(study, runs.derived):
         runs.at(_spread_over(study, first[:SPREAD]))
     known = np.array([each.heights for each in runs.at(first)])
     scales = _spread(known)
@@ -129,7 +133,7 @@ def _search(
     def rank(design: Design) -> tuple[float, float]:
         return design.shortfall, height(design) if np.all(np.isfinite(design.heights)) else np.inf
 
-    if _climbs(runs):
+    if _climbs(runs.study, runs.derived):
         leaders = _leaders(runs, rank, max(1, budget // SAVED // runs.study.combinations))
     else:
         known = sorted(runs.designs.values(), key=rank)[: len(first) // 2]
@@ -143,9 +147,9 @@ def _search(
         leaders = _leaders(runs, rank)[:1]
 
 
-def _climbs(runs: Runs) -> bool:
+def _climbs(study: Study, derived: bool) -> bool:
     """Return whether derivatives lead to the best design of each combination of options."""
-    return runs.derived and bool(runs.study.continuous) and runs.study.combinations <= FEW
+    return derived and bool(study.continuous) and study.combinations <= FEW
 
 
 def _leaders(runs: Runs, rank: Callable[[Design], tuple[float, float]], each_has: int = 1) -> list[Design]:
