@@ -60,7 +60,10 @@ HOSTILE = {
     "long key": (f"{LOOM}[belt]\n{'a' * 200_000} = 1\n", "a key has 200000 characters; at most 1000"),
     "400 digits": (f"revolutions = {'1' * 400}\n{LOOM}", "... is outside [1e-09, "),
     "5000 digits": (f"revolutions = {'1' * 5000}\n{LOOM}", "a number has too many digits"),
-    "whole number": (f'{LOOM}[shaft]\nripple_order = "{"1" * 5000}"\n', "ripple_order = inf is not a finite number"),
+    "whole number": (
+        f'{LOOM}[shaft]\nripple_order = "{"1" * 5000}"\n',
+        "ripple_order = inf is not a finite number",
+    ),
     "quantity": (f'{LOOM}[shaft]\nspeed = "{"1" * 100_000} x y"\n', "... is not a quantity such as"),
     "nan": (f'{LOOM}[inputs]\nbelt.guide_clearance = [[nan, "1 mm"]]\n', "nan is not within 1e+09"),
     "inf": (f'{LOOM}[inputs]\nbelt.guide_clearance = [[inf, "1 mm"]]\n', "inf is not within 1e+09"),
