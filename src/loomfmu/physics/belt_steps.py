@@ -11,6 +11,7 @@ from .numerics.gauss import FIRST, LAST, RATES, VALUES, at_stage, corrected, for
 
 MOST_REPEATS = 30  # of the sweep over the stages, until the accelerations of an integration step are settled
 SETTLED = 1e-11  # of the modes: what a sweep may still change
+SETTLED_ON_BOARD = 1e-8  # against a board, by which no step is balanced to more than 1e-6
 GROWTH = 0.05  # of the free length in a step of the integration
 MOST_STEPS = 50  # of the integration in one step, before they are halved
 LARGEST_STEP = 5e-4  # s, of the integration
@@ -94,7 +95,8 @@ def advance(
         whether they settled, and the number of sweeps over the stages
     """
     step = stages.duration
-    settled = SETTLED * (size(q) + step * size(v)) + 1e-30
+    share = SETTLED if belt.board.side == 0.0 else SETTLED_ON_BOARD
+    settled = share * (size(q) + step * size(v)) + 1e-30
     first = swept(stages.first)
     second = swept(stages.second)
     third = swept(stages.third)
