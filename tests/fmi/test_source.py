@@ -267,6 +267,16 @@ def test_two_functions_of_one_name_are_refused():
         flatten(clashing)
 
 
+@pytest.mark.parametrize("clashing", [101.9, 2, math.sin])  # in C, 2 divides otherwise than 2.0
+def test_two_meanings_of_one_name_are_refused(clashing):
+    methods = {
+        name: type(Bell.step)((lambda self: sin).__code__, {"sin": meaning}, name)
+        for name, meaning in (("first", 2.0), ("second", clashing))
+    }
+    with pytest.raises(SourceError, match=r"two constants are called sin|sin has two meanings"):
+        flatten(type("Clashing", (Component,), {**methods, "__module__": __name__}))
+
+
 @pytest.mark.parametrize("component", COMPONENTS.values(), ids=COMPONENTS)
 def test_every_component_flattens_to_the_same_text_each_time(component):
     text = flatten(component)

@@ -92,6 +92,10 @@ def _used_by(methods: dict[str, FunctionType]) -> _Used:
     used = _Used()
     for method in methods.values():
         _collect(method, used)
+    names = [*used.functions, *used.records, *used.constants, *used.from_math]
+    for name in names:
+        if names.count(name) > 1:
+            raise SourceError(f"{_place(method)}: {name} has two meanings in what the component uses")
     return used
 
 
@@ -114,7 +118,8 @@ def _collect(function: FunctionType, used: _Used) -> None:
             elif used.functions[name] is not value:
                 raise SourceError(f"{_place(function)}: two functions are called {name}")
         elif isinstance(value, int | float) or _is_table(value):
-            used.constants[name] = value
+            if repr(used.constants.setdefault(name, value)) != repr(value):
+                raise SourceError(f"{_place(function)}: two constants are called {name}")
         elif is_dataclass(value) and isinstance(value, type):
             _add_record(value, used, function)
         else:
