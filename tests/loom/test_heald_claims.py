@@ -104,6 +104,9 @@ def test_what_a_run_shows_of_a_dwell_that_it_cuts_off_is_the_least_that_it_lasts
         {"kind": "dwell", "heald": "heald_1", "at_least": "80 deg"},
         {"kind": "dwell_contains", "heald": "heald_1", "angles": ["140 deg"]},
         {"kind": "above", "signal": "heald_1.lift", "bound": "-1 mm", "window": ["90 deg", "180 deg"]},
+        {"kind": "below", "signal": "abs(heald_1.lift - heald_2.lift)", "bound": "1 m"},
+        {"kind": "below", "signal": "shaft.angle - heald_2.lift * 1 rad / 1 m", "bound": "100 rad"},
+        {"kind": "above", "signal": "-1 * heald_1.lift", "bound": "-1 m", "at_samples": True},
     ],
 )
 def test_a_run_that_is_shorter_than_the_repeat_of_the_weave_shows_too_little(

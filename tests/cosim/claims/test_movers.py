@@ -10,7 +10,7 @@ from drawn_runs import drawn
 from scene_texts import MOTION, claim, loom, table, verdicts, wires
 
 from loomfmu import LoomfmuError, Verdict, judge
-from loomfmu.cosim.claims.movers import Mover, movers_of
+from loomfmu.cosim.claims.movers import Mover, movers_of, owners_of
 
 MAIN = {"weft": "WeftInsertion", "belt": "BeltMonitor", "shaft": "MainShaft"}
 
@@ -35,6 +35,17 @@ class Run:
         if signal.partition(".")[0] not in self._alone:
             raise LoomfmuError(f"{signal} is not recorded")
         return 0.0
+
+
+def test_the_instances_of_signals_stand_anywhere_in_an_expression() -> None:
+    named = [
+        "weft.travel",
+        "plant.der(a)",
+        "plant_2.body.v[1,2]",
+        "min(0.5 mm - belt.margin, -2e-3 * a.b)",
+        "1.5 deg",
+    ]
+    assert owners_of(named) == {"weft", "plant", "plant_2", "belt", "a"}
 
 
 GEARED = {"weft.shaft_angle": "gear.turned", "gear.shaft_angle": "shaft.angle", "belt.travel": "weft.travel"}

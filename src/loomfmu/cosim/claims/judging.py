@@ -15,7 +15,7 @@ from ...errors import LoomfmuError
 from ...fmi.native.libraries import needed_library
 from ...traces import Signals, Verdict
 from ..standard import standard
-from .movers import Mover, movers_of
+from .movers import Mover, movers_of, owners_of
 
 ROOM = 16  # for the times that a function finds, at first
 BESIDE = ("valid_if", "error", "lowest", "highest")  # in the order of `run_beside`
@@ -80,7 +80,7 @@ class Question(NamedTuple):
         """
         forms = [(number(form.signal), form.sense, form.judges(trace)) for form in self.forms]
         signals = [number(signal) for signal in self.signals]
-        owners = {signal.partition(".")[0] for signal in self.signals}
+        owners = owners_of(self.signals)
         weave = standard().weave_of(owners, trace)
         turning = [
             (number(each.angle), float(each.turns), each.turn, each.speed or 0.0)

@@ -1,6 +1,7 @@
 """The angles and speeds that turn the instances of a claim: whole revolutions of these matter."""
 
 import math
+import re
 from collections.abc import Container, Iterable, Iterator, Mapping
 from functools import lru_cache
 from typing import NamedTuple, Protocol
@@ -50,6 +51,11 @@ class Wired(Protocol):
     def unit(self, signal: str) -> str: ...
 
     def parameter(self, signal: str) -> float: ...
+
+
+def owners_of(signals: Iterable[str]) -> set[str]:
+    """Return the instances whose outputs some signals are, or stand in them where these are expressions."""
+    return {name for signal in signals for name in re.findall(r"(?<![\w.])([^\W\d]\w*)\.\S", signal)}
 
 
 def movers_of(instances: Iterable[str], run: Wired) -> list[Mover]:
