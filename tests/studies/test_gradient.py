@@ -112,6 +112,14 @@ def test_it_shows_a_table_with_the_units_that_people_read():
     assert "by shaft.speed" in repr(found) and "1/(rev/min)" in found._repr_html_()
 
 
+def test_a_claim_whose_samples_alone_show_no_distance_is_refused(tmp_path):
+    claim = 'name = "gentle"\nkind = "below"\nsignal = "heald_1.acceleration"\nbound = "300 m/s2"\n'
+    path = tmp_path / "gentle.toml"
+    path.write_text((SIMS / "wl680_3600.toml").read_text() + f"[[claims]]\n{claim}")
+    with pytest.raises(LoomfmuError, match="of 'gentle': its derivative is not known"):
+        gradient(path, of="gentle", by="shaft.speed", set={"revolutions": 2})
+
+
 @pytest.mark.parametrize(
     ("scene", "of", "by", "message"),
     [

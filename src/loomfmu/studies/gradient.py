@@ -24,6 +24,7 @@ from ..sweeps.varied import Varied, varied
 from ..traces import Verdict
 
 Floats = NDArray[np.float64]
+UNKNOWN = "its derivative is not known: the samples alone show no distance from its bound"
 CHANGE = 2.0**-10  # of a value: start values that follow it are found by what changes with it
 
 
@@ -123,6 +124,9 @@ def gradient(
         return [number_of(judged[place], place < first) for place in places]
 
     si = np.array([each.slope(lambda trace: numbers(found.judged(trace))) for each in found.directions]).T
+    for name, row in zip(of, si, strict=True):
+        if not np.all(np.isfinite(row)):
+            raise LoomfmuError(f"of {shown(name)}: {UNKNOWN}")
     factors = np.array([units.unit(each.display).factor for each in parameters])
     shares = np.array([each.displayed(1.0) for each in verdicts])
     return Gradient(
@@ -167,7 +171,10 @@ def without_gradient(scene: Scene, verdict: Verdict) -> str:
 
 
 def slopes_of(run: Derived, claims: int) -> Floats:
-    """The slopes of the distances of so many claims in the directions of a run, (claims, directions)."""
+    """The slopes of the distances of so many claims in the directions of a run, (claims, directions).
+
+    They are NaN where they are not known.
+    """
     columns = [
         each.slope(lambda trace: [verdict.distance for verdict in run.judged(trace)[:claims]])
         for each in run.directions

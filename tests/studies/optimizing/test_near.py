@@ -78,6 +78,19 @@ def test_derivatives_are_what_differences_approach(text: str, scene: Path, point
                 np.testing.assert_allclose(one, other, rtol=1e-4, atol=1e-5 * np.max(np.abs(other)))
 
 
+def test_a_claim_without_a_derivative_has_differences_and_none_is_taken_for_0() -> None:
+    claim = (
+        '[[claims]]\nname = "gentle"\nkind = "below"\nsignal = "heald_1.acceleration"\nbound = "300 m/s2"\n'
+    )
+    scene = Path("gentle.toml")
+    scene.write_text(f"{DEMO.read_text()}{claim}")
+    text = 'maximise = "shaft.speed"\n[ranges]\n"shaft.speed" = ["400 rpm", "600 rpm"]\n'
+    with runs_of(study(text, scene, FEW)) as runs:
+        assert runs.derived and runs.slopes((0.5,)) is None
+        exact, _rough = both(runs, [0.5])
+        assert exact is not None and exact.changes[-1, 0] < -0.1  # it goes with the square of the speed
+
+
 def test_a_loop_has_differences() -> None:
     text = 'maximise = "shaft.speed"\n[ranges]\n"shaft.speed" = ["200 rpm", "300 rpm"]\n'
     with runs_of(study(text, SIMS / "light_shaft.toml", "[set]\nsteps_per_revolution = 90\n")) as runs:

@@ -22,6 +22,12 @@ NARROW = """
 "shaft.speed" = ["590 rev/min", "610 rev/min"]
 """
 LOOMS = 200
+BETWEEN = """
+[[claims]] # judged by the mechanism's own function, as its signal has no rate
+kind = "below"
+signal = "heald_1.acceleration"
+bound = "300 m/s2"
+"""
 
 
 def ran(folder: Path, tolerances: str, scene: str = DEMO, **given: Any) -> Result:
@@ -77,6 +83,7 @@ def test_a_normal_distribution_without_ends_has_no_worst_case(tmp_path: Path) ->
         ("damper", '"damper.damping_ratio" = [0, 0.2]', 0, "it counts or decides, so it has no derivative"),
         ("light_shaft", '"weft.belt_length" = ["2.9 m", "3.1 m"]', 0,
          "closes a loop, which has no derivatives"),
+        (DEMO, f'"shaft.speed" = ["580 rpm", "620 rpm"]\n{BETWEEN}', -1, "its derivative is not known"),
         (DEMO, '"shaft.speed" = ["580 rpm", "590 rpm"]', 1, "600 rev/min is outside its tolerance"),
     ],
 )  # fmt: skip

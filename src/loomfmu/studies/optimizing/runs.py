@@ -146,7 +146,7 @@ class Runs:
     def slopes(self, point: Point) -> Floats | None:
         """The derivatives of goals and of the room at claims, by the shares of the ranges.
 
-        Shape (goals + claims, ranges), in each row that of the worst case. None where there are none.
+        Shape (goals + claims, ranges), in each row that of the worst case. None where one is not known.
         """
         if not self.derived:
             return None
@@ -159,7 +159,7 @@ class Runs:
         sides = np.where(np.arange(numbers.shape[1]) < goals, 1.0, -1.0)
         worst = np.argmax(np.nan_to_num(sides * numbers, nan=np.inf), axis=0)
         of_worst: Floats = slopes[worst, np.arange(len(worst))]
-        return np.nan_to_num(of_worst)
+        return of_worst if np.all(np.isfinite(of_worst)) else None
 
     def _derived(self, point: Point, case: Case) -> tuple[Floats, Floats]:
         """Goals and room in a case, and their derivatives by the shares of the ranges."""

@@ -13,7 +13,7 @@ from ...errors import LoomfmuError
 from ...traces import Verdict
 from ...traces.verdict import remarked
 from ..fitting.measured import Floats
-from ..gradient import move_of, slopes_of, without_gradient
+from ..gradient import UNKNOWN, move_of, slopes_of, without_gradient
 from ..span import port_of
 from .distributions import Distribution, distribution_of
 from .results import SAME
@@ -66,9 +66,13 @@ def error_bars(scene: Scene, derive: Derive, claims: int) -> Notes:
     except LoomfmuError as error:
         return _without(claims, str(error))
     bars = [_bar(found, values, row) for row in slopes]
+    known = np.all(np.isfinite(slopes), axis=1).tolist()
 
     def barred(verdicts: tuple[Verdict, ...]) -> tuple[Verdict, ...]:
-        whys = {number: without_gradient(scene, each) for number, each in enumerate(verdicts)}
+        whys = {
+            number: without_gradient(scene, each) or ("" if known[number] else UNKNOWN)
+            for number, each in enumerate(verdicts)
+        }
         noted = remarked(verdicts, {number: f"{NONE}: {why}" for number, why in whys.items() if why})
         return tuple(each if whys[number] else bars[number].on(each) for number, each in enumerate(noted))
 
