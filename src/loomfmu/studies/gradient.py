@@ -21,7 +21,7 @@ from ..cosim.scenes.scene import Scene
 from ..display import notebook
 from ..errors import LoomfmuError, shown, suggestion
 from ..sweeps.varied import Varied, varied
-from ..traces import Verdict
+from ..traces import Signals, Verdict
 
 Floats = NDArray[np.float64]
 UNKNOWN = "its derivative is not known: the samples alone show no distance from its bound"
@@ -173,13 +173,14 @@ def without_gradient(scene: Scene, verdict: Verdict) -> str:
 def slopes_of(run: Derived, claims: int) -> Floats:
     """The slopes of the distances of so many claims in the directions of a run, (claims, directions).
 
-    They are NaN where they are not known.
+    They are those of the samples: known to about 1e-3 where the signal of a claim has no rate, and NaN where
+    they are not known.
     """
-    columns = [
-        each.slope(lambda trace: [verdict.distance for verdict in run.judged(trace)[:claims]])
-        for each in run.directions
-    ]
-    return np.stack(columns, axis=1)
+
+    def distances(trace: Signals) -> list[float]:
+        return [each.sense * (each.worst - each.bound) for each in run.judged(trace)[:claims]]
+
+    return np.stack([each.slope(distances) for each in run.directions], axis=1)
 
 
 def number_of(verdict: Verdict, claim: bool = True) -> float:

@@ -22,6 +22,12 @@ NARROW = """
 "shaft.speed" = ["590 rev/min", "610 rev/min"]
 """
 LOOMS = 200
+SAMPLES = """
+[[claims]] # undecided, as nothing is known of its signal between the samples
+kind = "below"
+signal = "damper_1.spring_force"
+bound = "50 kN"
+"""
 BETWEEN = """
 [[claims]] # judged by the mechanism's own function, as its signal has no rate
 kind = "below"
@@ -77,13 +83,20 @@ def test_a_normal_distribution_without_ends_has_no_worst_case(tmp_path: Path) ->
     assert np.isnan(margin.loss) and margin.note.startswith("standard deviation ")
 
 
+def test_a_claim_on_a_signal_without_a_rate_has_the_slope_of_its_samples(tmp_path: Path) -> None:
+    verdict = ran(tmp_path, f'"shaft.speed" = ["580 rpm", "620 rpm"]\n{BETWEEN}').claims[-1]
+    # accelerations go with the square of the speed, of which 20 of 600 rev/min are a thirtieth
+    assert verdict.loss == pytest.approx(2.0 / 30.0 * verdict.worst, rel=1e-3)
+    assert verdict.deviation == pytest.approx(verdict.loss / np.sqrt(3.0), rel=1e-3)
+
+
 @pytest.mark.parametrize(
     ("scene", "tolerances", "number", "why"),
     [
         ("damper", '"damper.damping_ratio" = [0, 0.2]', 0, "it counts or decides, so it has no derivative"),
         ("light_shaft", '"weft.belt_length" = ["2.9 m", "3.1 m"]', 0,
          "closes a loop, which has no derivatives"),
-        (DEMO, f'"shaft.speed" = ["580 rpm", "620 rpm"]\n{BETWEEN}', -1, "its derivative is not known"),
+        (DEMO, f'"shaft.speed" = ["580 rpm", "620 rpm"]\n{SAMPLES}', -1, "it has no distance from its bound"),
         (DEMO, '"shaft.speed" = ["580 rpm", "590 rpm"]', 1, "600 rev/min is outside its tolerance"),
     ],
 )  # fmt: skip

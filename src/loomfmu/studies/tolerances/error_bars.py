@@ -13,7 +13,7 @@ from ...errors import LoomfmuError
 from ...traces import Verdict
 from ...traces.verdict import remarked
 from ..fitting.measured import Floats
-from ..gradient import UNKNOWN, move_of, slopes_of, without_gradient
+from ..gradient import move_of, slopes_of, without_gradient
 from ..span import port_of
 from .distributions import Distribution, distribution_of
 from .results import SAME
@@ -22,6 +22,7 @@ from .tolerances import check_twice
 Derive = Callable[[Sequence[Move]], Derived]
 SHARES = (np.arange(10_000) + 0.5) / 10_000  # of all looms, by which a deviation is known to 1 %
 NONE = "no error bar by tolerances"
+UNKNOWN = "it has no distance from its bound with a derivative"
 
 
 @dataclass(frozen=True)
@@ -68,12 +69,14 @@ def error_bars(scene: Scene, derive: Derive, claims: int) -> Notes:
     bars = [_bar(found, values, row) for row in slopes]
     known = np.all(np.isfinite(slopes), axis=1).tolist()
 
+    def why(number: int, verdict: Verdict) -> str:
+        if found := without_gradient(scene, verdict):
+            return found
+        return "" if known[number] and math.isfinite(verdict.distance) else UNKNOWN
+
     def barred(verdicts: tuple[Verdict, ...]) -> tuple[Verdict, ...]:
-        whys = {
-            number: without_gradient(scene, each) or ("" if known[number] else UNKNOWN)
-            for number, each in enumerate(verdicts)
-        }
-        noted = remarked(verdicts, {number: f"{NONE}: {why}" for number, why in whys.items() if why})
+        whys = {number: why(number, each) for number, each in enumerate(verdicts)}
+        noted = remarked(verdicts, {number: f"{NONE}: {text}" for number, text in whys.items() if text})
         return tuple(each if whys[number] else bars[number].on(each) for number, each in enumerate(noted))
 
     return barred
