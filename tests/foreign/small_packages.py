@@ -165,6 +165,12 @@ def given(number: object, unit: str = "", stated: str = "", of: str = "Real") ->
     )
 
 
+def both(*names: str) -> str:
+    """The connector `u` of the system, and values in this order: 7 for itself, 5 for another one."""
+    each = [value(name, 7.0 if name == "u" else 5.0) for name in names]
+    return connectors(U) + bindings(bound(*each))
+
+
 def inverted() -> str:
     entries = "".join(
         f'<ssc:MapEntry source="{a}" target="{b}"/>' for a, b in (("true", "false"), ("false", "true"))
@@ -209,6 +215,15 @@ SMALL: dict[str, Small] = {
         f"b_f.{OUT}",
         4.0,
         given(4.0),
+    ),
+    "value along a connection, and one of its end": Small(
+        BOX.format("a"), wire("u", "a.u"), f"a_f.{OUT}", 7.0, both("u", "a.u")
+    ),
+    "the same the other way round": Small(
+        BOX.format("a"), wire("u", "a.u"), f"a_f.{OUT}", 7.0, both("a.u", "u")
+    ),
+    "value for a system with a dot in its name": Small(
+        BOX.format("a.b"), "", f"a_b_f.{OUT}", 5.0, bindings(bound(value("a.b.u", 5.0)))
     ),
     "value for a system in the system": Small(
         system("a", falling("d"), outer=connectors(connector("p", "parameter")), wires=wire("p", "d.k")),
@@ -348,6 +363,34 @@ SMALL: dict[str, Small] = {
         F,
         "wrong",
     ),
+    "an output to an input on two ways": Small(
+        passing("f") + falling("d"),
+        wire("d.x", "y") + wire("y", f"f.{IN}", linear(2)) + wire("d.x", f"f.{IN}"),
+        F,
+        "wrong",
+        connectors(Y),
+    ),
+    "values of two connectors to an input": Small(
+        passing("f"),
+        INTO + wire("v", f"f.{IN}"),
+        F,
+        "wrong",
+        connectors(U, connector("v", "input")) + bindings(bound(value("u", 1.0), value("v", 2.0))),
+    ),
+    "two outputs to an output of the system": Small(
+        falling("d") + falling("e"), wire("d.x", "y") + wire("e.x", "y"), FELL, "wrong", connectors(Y)
+    ),
+    "set in a file that the FMU does not have": Small(
+        falling(
+            "d",
+            rest=bindings('<ssd:ParameterBinding source="resources/q.ssv" sourceBase="component"/>'),
+        ),
+        "",
+        FELL,
+        "wrong",
+        files={"q.ssv": parameters(value("k", 4.0))},
+    ),
+    "`_` in a number": Small(passing("f"), INTO, F, "wrong", given("1_0")),
     "connection from what does not exist": Small(
         passing("f") + falling("d"), wire("d.z", f"f.{IN}"), F, "wrong"
     ),

@@ -212,14 +212,19 @@ def test_what_names_no_variable_is_left_out_and_told(tmp_path: Path) -> None:
 def test_outputs_of_the_system_are_recorded_by_their_names(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    known = "".join(f'<ssd:Connector name="{name}" kind="output"/>' for name in ("the angle", "twice"))
+    known = "".join(
+        f'<ssd:Connector name="{name}" kind="{kind}"/>'
+        for name, kind in (("the angle", "output"), ("twice", "output"), ("start", "parameter"))
+    )
     ends = '<ssd:Connection startElement="drive" startConnector="phi" endConnector='
     twice = f'{ends}"twice"><ssc:LinearTransformation factor="2"/></ssd:Connection>'
     outer = STRUCTURE.replace("<ssd:Connectors>", f"<ssd:Connectors>{known}", 1)
     monkeypatch.setitem(globals(), "STRUCTURE", outer)
-    trace = ran(tmp_path, connection=f'{ends}"the angle"/>{twice}').trace
+    result = ran(tmp_path, connection=f'{ends}"the angle"/>{twice}{ends}"start"/>')
+    trace = result.trace
     np.testing.assert_array_equal(trace["all.the_angle"], trace["drive_motor.flange_phi"])
-    assert trace.unit("all.the_angle") == "rad" and "all.twice" not in trace
+    assert trace.unit("all.the_angle") == "rad" and not {"all.twice", "all.start"} & set(trace)
+    assert result.warnings == ("all.twice of the package is not recorded: a connection changes its value",)
 
 
 def test_a_value_for_a_component_that_does_not_exist_is_named(
@@ -239,6 +244,7 @@ def test_a_value_for_a_component_that_does_not_exist_is_named(
         (parameter("load", "Real", 'value="0.7" unit="daN.m"'), 7.0),
         (parameter("drive.free", "Real", 'value="5"'), 5.0),  # a connector of a system in the system
         (parameter("drive.free", "Real", 'value="5"') + parameter("load", "Real", 'value="7"'), 7.0),
+        (parameter("load", "Real", 'value="7"') + parameter("drive.free", "Real", 'value="5"'), 7.0),
         (
             parameter("load", "Real", 'value="7"') + parameter("drive.motor.load.tau", "Real", 'value="3"'),
             7.0,
@@ -424,6 +430,12 @@ MISTAKES = {
             for output in ("shaft_torque", "shaft_work")
         )
     },
+    "left head.travel and drive.free are connected in two different ways": {
+        "connection": connected("left head.travel", "load")["connection"]
+        + connected("left head.travel", "drive.free")["connection"].replace(
+            "/>", f">{TWICE}</ssd:Connection>"
+        )
+    },
     "connection from left head.travel is in m, left head.shaft_acceleration in rad/s2": connected(
         "left head.travel", "left head.shaft_acceleration"
     ),
@@ -449,6 +461,8 @@ MISTAKES = {
     ),
     "drive_motor.w_free = 1 kg, which does not fit rad/s": valued("w_free", "Real", '1" unit="kg'),
     "drive_motor.J = 'one' is not a number": valued("J", "Real", "one"),
+    "drive_motor.J = '1_0' is not a number": valued("J", "Real", "1_0"),
+    "DefaultExperiment stopTime = '1_0' is not a finite number": {"experiment": 'stopTime="1_0"'},
     "drive_motor.J = -11 kg.m2 is outside [-10, inf] kg.m2": valued("J", "Real", "-11"),
 }
 

@@ -205,3 +205,69 @@ def test_what_takes_no_value_of_a_connection_is_told(tmp_path: Path, wire: str, 
                 {"Motor.fmu": content},
             )
         )
+
+
+LOADED = '<ssd:Connection startConnector="{}" endElement="m" endConnector="load.tau"/>'
+
+
+def test_a_system_may_have_a_dot_in_its_name(tmp_path: Path) -> None:
+    inside = in_system(MOTOR.format("m"), LOADED.format("load"), before=connectors(load="input"))
+    given = values(a__b__load='Real value="5"')
+    system = in_system(f'<ssd:System name="a.b">{inside}</ssd:System>', before=given)
+    content = motor2(tmp_path).read_bytes()
+    result = ran(packed(tmp_path / "a.ssp", system, {"Motor.fmu": content}))
+    assert result.scene.instances["a_b_m"].values == {"load_tau": 5.0} and not result.warnings
+
+
+def test_values_from_two_connectors_to_one_input_are_refused(tmp_path: Path) -> None:
+    before = connectors(load="input", more="input") + values(load='Real value="5"', more='Real value="6"')
+    wires = map(LOADED.format, ("load", "more"))
+    system = in_system(MOTOR.format("m"), *wires, before=before)
+    content = motor2(tmp_path).read_bytes()
+    said = r"m\.load\.tau takes the values of two connectors, load and more"
+    with pytest.raises(LoomfmuError, match=said):
+        ran(packed(tmp_path / "a.ssp", system, {"Motor.fmu": content}))
+
+
+SET = (
+    f'<ssv:ParameterSet version="2.0" name="p" {SPACES}><ssv:Parameters><ssv:Parameter name="J">'
+    '<ssv:Real value="{}"/></ssv:Parameter></ssv:Parameters></ssv:ParameterSet>'
+)
+FROM_COMPONENT = (
+    '<ssd:ParameterBindings><ssd:ParameterBinding source="resources/set.ssv" sourceBase="component"/>'
+    "</ssd:ParameterBindings>"
+)
+
+
+@pytest.mark.parametrize("nested", [False, True])
+def test_values_may_be_in_a_file_of_their_fmu(tmp_path: Path, nested: bool) -> None:
+    fmu = motor2(tmp_path)
+    with zipfile.ZipFile(fmu, "a") as archive:
+        archive.writestr("resources/set.ssv", SET.format(3))
+    files = {"Motor.fmu": fmu.read_bytes(), "set.ssv": SET.format(4).encode()}
+    system = in_system(MOTOR.replace("/>", f">{FROM_COMPONENT}</ssd:Component>").format("m"))
+    path = packed(tmp_path / "a.ssp", system, files)
+    if nested:
+        inner = f'<ssd:Component name="in" type="{SSP}" source="resources/a.ssp"/>'
+        path = packed(tmp_path / "b.ssp", in_system(inner), {"a.ssp": path.read_bytes()})
+    (motor,) = ran(path).scene.instances.values()
+    assert motor.values == {"J": 3.0}
+
+
+@pytest.mark.parametrize(
+    ("system", "said"),
+    [
+        (
+            in_system(MOTOR.replace("/>", f">{FROM_COMPONENT}</ssd:Component>").format("m")),
+            r"a\.ssp: resources/Motor\.fmu: resources/set\.ssv is not in the package",
+        ),
+        (
+            in_system(MOTOR.format("m"), before=FROM_COMPONENT),
+            "is for the values of a component, not of a sys",
+        ),
+    ],
+)
+def test_a_file_that_is_not_in_a_component_is_told(tmp_path: Path, system: str, said: str) -> None:
+    files = {"Motor.fmu": motor2(tmp_path).read_bytes(), "set.ssv": SET.format(4).encode()}
+    with pytest.raises(LoomfmuError, match=said):
+        ran(packed(tmp_path / "a.ssp", system, files))

@@ -11,6 +11,7 @@ from ..scenes.graph import Wire
 from ..scenes.instances import Instance
 from ..scenes.wiring import check_once, elements, wire
 from .structure import Node, connectors, dictionary, systems
+from .values import Given
 from .xml import full, required, suppressed, transformed
 
 Names = Mapping[tuple[str, ...], str]  # the instance that each component is, by the names that lead to it
@@ -26,11 +27,20 @@ class Link:
 
 @dataclass(frozen=True)
 class Reached:
-    """A connector that a value reaches, and what became of the value on its way: its number and its unit."""
+    """The way of a value to a connector, both ends included, and what became of its number and its unit.
 
-    node: Node
+    It is `plain` where nothing but a change of units did anything to it.
+    """
+
+    way: tuple[Node, ...]
     conversion: Linear
     unit: Stated | None
+    plain: bool = True
+
+    @property
+    def node(self) -> Node:
+        """The connector."""
+        return self.way[-1]
 
 
 class Nets:
@@ -52,7 +62,7 @@ class Nets:
         known: dict[frozenset[Node], Link] = {}
         for one, other, link in _connections(system, units):
             if known.setdefault(frozenset((one, other)), link) != link:
-                raise LoomfmuError(f"{_dotted(one)} and {_dotted(other)} are connected in two different ways")
+                raise LoomfmuError(_two_ways(one, other))
             self._links.setdefault(one, []).append((other, link))
             self._links.setdefault(other, []).append((one, link))
         self._causality = {node: _causality(node, instances, names) for node in self._links}
@@ -66,14 +76,15 @@ class Nets:
                 if self._causality[end.node] == "parameter":
                     ends = f"{_dotted(output)} -> {_dotted(end.node)}"
                     raise LoomfmuError(f"connection {ends}: an output cannot give the value of a parameter")
-                if self._causality[end.node] == "input":
+                if self._causality[end.node] != "output":
                     sources.setdefault(end.node, {})[output] = end.conversion
         wires: list[Wire] = []
-        for sink in self._links:
-            found, name = sources.get(sink, {}), f"{self._names.get(sink[0])}.{sink[1]}"
+        for sink in sorted(self._links, key=lambda node: node[0] not in self._names):
+            found, owner = sources.get(sink, {}), self._names.get(sink[0])
+            name = f"{owner}.{sink[1]}" if owner else _dotted(sink)
             if len(found) > 1:
                 raise LoomfmuError(f"{name} is connected to {len(found)} outputs")
-            for (path, connector), made in found.items():
+            for (path, connector), made in found.items() if owner else ():
                 pairs = elements(self._instances, name, f"{self._names[path]}.{connector}")
                 wires += [wire(self._instances, to, source, made) for to, source in pairs]
         return check_once(list(dict.fromkeys(wires)))
@@ -88,20 +99,19 @@ class Nets:
         takers = zip(found, causality, strict=True)
         return [each for each, kind in takers if kind in ("input", "parameter") and "output" not in causality]
 
-    def outputs(self) -> dict[str, str]:
-        """The connectors of the outermost system to which an output leads as it is, and that output.
+    def outputs(self) -> Iterator[tuple[str, str, str]]:
+        """The connectors of the outermost system to which outputs lead, those, and why they are others.
 
-        Its unit may be converted on the way. Arrays and transformed values are left out.
+        The reason is empty where nothing but the unit may change on the way.
         """
-        found = {}
         for output in [node for node, causality in self._causality.items() if causality == "output"]:
             (name, variable), unit = self.variable(output), self._unit(output)
             fmu = self._instances[name].fmu
+            changed = "it is an array" if fmu.elements(variable) else ""
             for end in self._flow(output, unit):
-                same = end.conversion == conversion("", unit, "", end.unit)
-                if not end.node[0] and same and not fmu.elements(variable):
-                    found[end.node[1]] = f"{name}.{fmu.name_of(variable)}"
-        return found
+                if not end.node[0]:
+                    reason = changed or ("" if end.plain else "a connection changes its value")
+                    yield end.node[1], f"{name}.{fmu.name_of(variable)}", reason
 
     def variable(self, node: Node) -> tuple[str, str]:
         """The instance and the variable that a connector of a component is."""
@@ -118,23 +128,44 @@ class Nets:
     def _flow(self, start: Node, unit: Stated | None) -> Iterator[Reached]:
         """Yield what a value reaches, through connectors of systems and itself first.
 
-        A unit is converted before the transformation of its connection, as the standard has it.
+        A unit is converted before the transformation of its connection, as the standard has it. Raises
+        LoomfmuError where two ways make different values of it.
         """
-        found = {start: Reached(start, SAME, unit)}
+        found = {start: Reached((start,), SAME, unit)}
         waiting = [found[start]]
         for here in waiting:
             yield here
             if here.node != start and self._causality[here.node] == "output":
                 continue  # it gives a value of its own
             for node, link in self._links[here.node]:
-                if node in found:
+                if node in here.way:
                     continue
                 to, made = self._unit(node), SAME
                 if not link.suppressed:
                     made = conversion(f"connection from {_dotted(here.node)}", here.unit, _dotted(node), to)
                 total = here.conversion.then(made).then(link.transformation)
-                found[node] = Reached(node, total, to or here.unit)
-                waiting.append(found[node])
+                plain = here.plain and link == Link(SAME, suppressed=False)
+                there = Reached((*here.way, node), total, to or here.unit, plain)
+                if found.setdefault(node, there) is there:
+                    waiting.append(there)
+                elif found[node].conversion != total:
+                    raise LoomfmuError(_two_ways(start, node))
+
+
+def in_order(values: list[tuple[Reached, Given]]) -> list[Given]:
+    """Return the values that reach an instance, those on a longer way later: its ends have none of their own.
+
+    Raises LoomfmuError for a variable whose values do not come along one way.
+    """
+    values = sorted(values, key=lambda each: len(each[0].way))
+    last: dict[Node, Reached] = {}
+    for reached, _given in values:
+        before = last.setdefault(reached.node, reached)
+        if before.way[0] not in reached.way:
+            sink, *ends = map(_dotted, (reached.node, before.way[0], reached.way[0]))
+            raise LoomfmuError(f"{sink} takes the values of two connectors, {ends[0]} and {ends[1]}")
+        last[reached.node] = reached
+    return [given for _reached, given in values]
 
 
 def _causality(node: Node, instances: dict[str, Instance], names: Names) -> str:
@@ -201,3 +232,7 @@ def _check_known(node: Node, kind: str, name: str, known: Collection[str]) -> No
 
 def _dotted(node: Node) -> str:
     return ".".join((*node[0], node[1]))
+
+
+def _two_ways(one: Node, other: Node) -> str:
+    return f"{_dotted(one)} and {_dotted(other)} are connected in two different ways"

@@ -12,7 +12,7 @@ from urllib.parse import unquote, urlsplit
 from xml.etree.ElementTree import Element, ParseError, fromstring
 
 from ...cache.entries import PACKAGES, folder
-from ...errors import LoomfmuError
+from ...errors import LoomfmuError, within
 from ...files import check_archive, source
 
 LARGEST_XML = 100_000_000  # bytes of one XML file
@@ -39,7 +39,7 @@ class Package:
         self._archive.close()
 
     def opened(self, reference: str) -> "Package":
-        """A package in the package. What it refers to is known here as "its reference!/the other one"."""
+        """A package or an FMU in the package. Its files are known here as "its reference!/their own"."""
         if reference not in self._inner:
             self._inner[reference] = Package(self.unpacked(reference))
         return self._inner[reference]
@@ -47,7 +47,8 @@ class Package:
     def root(self, reference: str) -> Element:
         """The root of an XML file of the package."""
         if inner := self._within(reference):
-            return inner[0].root(inner[1])
+            with within(inner[0]):
+                return inner[1].root(inner[2])
         name = self.member(reference)
         try:
             return fromstring(self._content(name))
@@ -66,7 +67,8 @@ class Package:
     def unpacked(self, reference: str) -> Path:
         """A file of the package, put where it can be read from."""
         if inner := self._within(reference):
-            return inner[0].unpacked(inner[1])
+            with within(inner[0]):
+                return inner[1].unpacked(inner[2])
         name = self.member(reference)
         with _reading(f"{name}: cannot be unpacked"):
             content = self._archive.read(name)
@@ -83,10 +85,10 @@ class Package:
             raise LoomfmuError(f"{reference or 'a parameter set'} is not in the package")
         return name
 
-    def _within(self, reference: str) -> tuple["Package", str] | None:
-        """The package in this one that a reference leads into, and what that calls the file."""
+    def _within(self, reference: str) -> tuple[str, "Package", str] | None:
+        """What a reference leads into, a package or an FMU in this package, and what that calls the file."""
         found = (name for name in self._inner if reference.startswith(f"{name}!/"))
-        return next(((self._inner[name], reference[len(name) + 2 :]) for name in found), None)
+        return next(((name, self._inner[name], reference[len(name) + 2 :]) for name in found), None)
 
     def _content(self, name: str) -> bytes:
         size = self._members[name].file_size

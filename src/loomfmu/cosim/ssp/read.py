@@ -25,7 +25,7 @@ from ..scenes.instance_tables import overridden, override, prevailing, state_uni
 from ..scenes.instances import TOLERANCE, Instance, check_name
 from ..scenes.scene import Scene, assemble
 from ..scenes.settings import DEEPEST, TIMES, toml
-from .connections import Nets
+from .connections import Nets, Reached, in_order
 from .package import Package
 from .structure import Node, connectors, joining, stated_by, structure, systems
 from .values import Given, apply, bound
@@ -100,6 +100,7 @@ class _Reader:
             lacking = self.unitless[0].partition(" ")[0].replace(".", ".units.", 1)
             self.notes.append(f"{taken}; state it by --set {lacking}=...")
         wires = nets.wires
+        recorded = {} if text is not None else self._recorded(system, instances, nets)
         if text and text.get("claims") and any(transformed(each, "") != SAME for each in self.root.iter()):
             raise LoomfmuError("a connection transforms its value, so the claims cannot be judged")
         tables = self._foreign_tables() if annotation is None else _our_tables(text or {}, annotation)
@@ -122,7 +123,7 @@ class _Reader:
             package_sha256=self.package.sha256,
             notes=tuple(self.notes),
             overrides=dict(overrides),
-            connectors={} if text is not None else _recorded(system, instances, nets.outputs()),
+            connectors=recorded,
         )
 
     def _scene_of_ours(self) -> Element | None:
@@ -143,28 +144,33 @@ class _Reader:
     ) -> dict[str, list[Given]]:
         """The values of each instance in the order they are set: those of outer systems later.
 
-        Those that come along connections are last: an end of one has no value of its own.
+        Those that come along connections are last, the longest way last of all: an end of a connection has no
+        value of its own. Raises LoomfmuError for values that come from two places.
         """
         given_in = partial(bound, read=self.package.root, units=self.units)
         values = {name: list(given_in(each.element)) for name, each in found.items()}
-        wired: dict[str, list[Given]] = {name: [] for name in found}
+        wired: dict[str, list[tuple[Reached, Given]]] = {name: [] for name in found}
         dotted = {".".join(each.path): name for name, each in found.items()}
+        nodes = {
+            ".".join((*node[0], node[1])): node for node in reversed(list(passing))
+        }  # the outermost counts
         for path, element in reversed(list(systems(system))):  # the outermost last: it prevails
             for given in given_in(element):
-                direct = _in_component(path, given, dotted)
-                for name, value in direct or self._by_wires(path, given, passing, nets):
-                    (values if direct else wired)[name].append(value)
-        return {name: [*each, *wired[name]] for name, each in values.items()}
+                if direct := _in_component(path, given, dotted):
+                    values[direct[0]].append(direct[1])
+                    continue
+                whole = ".".join((*path, given.name))
+                for name, value in self._by_wires(whole, nodes.get(whole), given, passing, nets):
+                    wired[name].append(value)
+        return {name: [*each, *in_order(wired[name])] for name, each in values.items()}
 
     def _by_wires(
-        self, path: Sequence[str], given: Given, passing: Mapping[Node, Stated | None], nets: Nets
-    ) -> list[tuple[str, Given]]:
+        self, whole: str, node: Node | None, given: Given, passing: Mapping[Node, Stated | None], nets: Nets
+    ) -> list[tuple[str, tuple[Reached, Given]]]:
         """The instances to which a system's connector leads, each with the value under its own name for it.
 
-        Notes a value that no instance takes.
+        Notes a value that no instance takes; `whole` is its name.
         """
-        whole = ".".join((*path, given.name))
-        node = next((each for each in _nodes(whole) if each in passing), None)
         inside = passing[node] if node else None
         takers = nets.reached(node, inside or given.unit) if node else []
         if not takers:
@@ -176,7 +182,8 @@ class _Reader:
         for taken in takers:
             name, variable = nets.variable(taken.node)
             made = entered.then(taken.conversion)
-            found.append((name, replace(given, name=variable, unit=taken.unit, transformation=made)))
+            value = replace(given, name=variable, unit=taken.unit, transformation=made)
+            found.append((name, (taken, value)))
         return found
 
     def _instance(self, name: str, element: Element, stated: Any) -> Instance:
@@ -212,6 +219,23 @@ class _Reader:
 
     # ---- the rest
 
+    def _recorded(self, system: Element, instances: Iterable[str], nets: Nets) -> dict[str, str]:
+        """The outputs of the outermost system as a trace calls them, below the name of the system.
+
+        Notes those that are left out.
+        """
+        own, found = required(system, "name"), dict[str, str]()
+        given = ("input", "parameter")
+        known = {required(each, "name") for each in connectors(system) if each.get("kind") not in given}
+        for name, signal, reason in nets.outputs():
+            if name in known and reason:
+                self.notes.append(f"{own}.{name} of the package is not recorded: {reason}")
+            elif name in known:
+                found[name] = signal
+        owner = plain_names([*instances, own], [own])[-1]
+        names = plain_names(found, found)
+        return {f"{owner}.{name}": signal for name, signal in zip(names, found.values(), strict=True)}
+
     def _foreign_tables(self) -> dict[str, Any]:
         """Return a third-party package's settings, as the text of a scene without its instances."""
         experiment = self.root.find(full("ssd:DefaultExperiment"))
@@ -228,15 +252,7 @@ class _Reader:
         return tables
 
 
-def _recorded(system: Element, instances: Iterable[str], outputs: Mapping[str, str]) -> dict[str, str]:
-    """The outputs of the outermost system as a trace calls them, below the name of the system."""
-    own = required(system, "name")
-    owner = plain_names([*instances, own], [own])[-1]
-    names = plain_names(outputs, outputs)
-    return {f"{owner}.{name}": signal for name, signal in zip(names, outputs.values(), strict=True)}
-
-
-def _in_component(path: Sequence[str], given: Given, dotted: Mapping[str, str]) -> list[tuple[str, Given]]:
+def _in_component(path: Sequence[str], given: Given, dotted: Mapping[str, str]) -> tuple[str, Given] | None:
     """The instance that a value of a system names, and the value under its own name for it; none otherwise.
 
     `dotted` are the instances by the names of the systems around them and their own, joined by dots.
@@ -245,8 +261,8 @@ def _in_component(path: Sequence[str], given: Given, dotted: Mapping[str, str]) 
     parts = (*path, *given.name.split(".", most))
     for end in range(len(path) + 1, len(parts)):
         if name := dotted.get(".".join(parts[:end])):
-            return [(name, replace(given, name=".".join(parts[end:])))]
-    return []
+            return name, replace(given, name=".".join(parts[end:]))
+    return None
 
 
 def _our_tables(text: dict[str, Any], annotation: Element) -> dict[str, Any]:
@@ -261,12 +277,6 @@ def _annotation(parent: Element, kind: str, content: str) -> Element | None:
         if annotation.get("type") == kind:
             return annotation.find(full(content))
     return None
-
-
-def _nodes(name: str) -> Iterator[Node]:
-    """The connectors of systems that a dotted name may mean."""
-    parts = name.split(".")
-    return ((tuple(parts[:end]), ".".join(parts[end:])) for end in range(len(parts)))
 
 
 def _components(system: Element, path: tuple[str, ...] = ()) -> Iterator[_Found]:

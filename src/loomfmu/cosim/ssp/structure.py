@@ -22,6 +22,7 @@ def structure(package: Package, depth: int = 0) -> Element:
     own = read_units(root.iterfind(full("ssd:Units")))
     for elements in list(root.iter(full("ssd:Elements"))):
         for place, component in enumerate(elements):
+            _enter_component(package, component)
             if component.tag != full("ssd:Component") or component.get("type") != SSP:
                 continue
             name, source = required(component, "name"), required(component, "source")
@@ -34,7 +35,19 @@ def structure(package: Package, depth: int = 0) -> Element:
             own |= units
             root.extend(inner.findall(full("ssd:Units")))
             elements[place] = _placed(inner, component, name, source)
+    if any(each.get("sourceBase") == "component" for each in root.iter()):
+        raise LoomfmuError('sourceBase = "component" is for the values of a component, not of a system')
     return root
+
+
+def _enter_component(package: Package, component: Element) -> None:
+    """Name the files in a component that its values are taken from after that component."""
+    for each in component.iter() if component.tag == full("ssd:Component") else ():
+        if each.get("sourceBase") == "component":
+            source = required(component, "source")
+            package.opened(source)
+            each.set("source", f"{source}!/{required(each, 'source')}")
+            del each.attrib["sourceBase"]
 
 
 def _placed(inner: Element, component: Element, name: str, source: str) -> Element:

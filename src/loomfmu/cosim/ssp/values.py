@@ -9,7 +9,7 @@ from ...errors import LoomfmuError, shown
 from ..importing.conversions import SAME, Definition, Linear, Stated, stated
 from ..importing.fmus import Port
 from ..scenes.instances import Instance
-from .xml import full, read_units, required, suppressed, transformed
+from .xml import full, number, read_units, required, suppressed, transformed
 
 Read = Callable[[str], Element]  # the root of an XML file in the package
 
@@ -27,7 +27,7 @@ class Given:
     def number(self, unit: Stated | None, where: str) -> float:
         """Return its number in a unit, or as it stands if there is none. Raises LoomfmuError."""
         try:
-            value = float(self.text)
+            value = number(self.text)
         except ValueError:
             raise LoomfmuError(f"{where} = {shown(self.text)} is not a number") from None
         if self.unit and unit:

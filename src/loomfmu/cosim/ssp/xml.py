@@ -122,11 +122,22 @@ def required(element: Element, attribute: str) -> str:
     return value
 
 
+def number(text: str) -> float:
+    """Return a number of XML, which has no `_` between its digits. Raises ValueError.
+
+    >>> number(" 1.5 ")
+    1.5
+    """
+    if "_" in text:
+        raise ValueError
+    return float(text)
+
+
 def real(element: Element, attribute: str, default: float) -> float:
     """A finite number as an attribute. Raises LoomfmuError for anything else."""
     text = element.get(attribute)
     try:
-        value = default if text is None else float(text)
+        value = default if text is None else number(text)
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
