@@ -50,7 +50,11 @@ class Point:
         self.instance, self.start = instance, kind == "start"
         self.outputs = [v.name for v in reals(name, "output")]
         self.knowns = reals(name, "input", "parameter") if self.start else reals(name, "input")
-        self.values = {v.name: drawn(v, v.start, rng) for v in reals(name, "parameter")}
+        # a start value may switch something off, as 0 often does: there a derivative by it is easily lost
+        self.values = {
+            v.name: v.start if rng.random() < 0.3 else drawn(v, v.start, rng)
+            for v in reals(name, "parameter")
+        }
         for v in declared(COMPONENTS[name]):
             if v.causality == "parameter" and v.type is bool:
                 self.values[v.name] = rng.random() < 0.5
@@ -104,8 +108,8 @@ class Point:
         for share in STEPS:
             step = share * scale(known, value)
             ys = [self.outputs_at({known.name: value + n * step}) for n in (-2, -1, 0, 1, 2)]
-            if None not in ys:
-                found.append([slopes(*each, step) for each in zip(*ys, strict=True)])
+            sides = [each or [math.nan] * len(self.outputs) for each in ys]  # beyond a limit, for instance
+            found.append([slopes(*each, step) for each in zip(*sides, strict=True)])
         of_outputs = [
             [[at[place][side] for at in found] for side in range(3)] for place in range(len(self.outputs))
         ]
@@ -125,6 +129,7 @@ def best(values: list[float]) -> tuple[float, float]:
 
     With it comes that change. Near a kink, long steps agree on what is true beyond it.
     """
+    values = [*filter(math.isfinite, values)]
     changes = [(abs(a - b), b) for a, b in itertools.pairwise(values)]
     for limit in (1e-7, 1e-4):
         for error, value in reversed(changes):
@@ -136,6 +141,7 @@ def best(values: list[float]) -> tuple[float, float]:
 
 def shortest(values: list[float]) -> tuple[float, float]:
     """The value of the shortest step, and how much it changed the one before."""
+    values = [*filter(math.isfinite, values)]
     return (values[-1], abs(values[-1] - values[-2])) if len(values) > 1 else (0.0, math.inf)
 
 
@@ -167,7 +173,8 @@ def compared(point: Point, report: Callable[[str, str, float, float], None]) -> 
             noise = 1e-8 * max(abs(value), 1.0) / unit
             size = max(abs(tangent), noise * 1e3)
             offs = [(abs(tangent - each) - 10.0 * error, error) for each, error in candidates]
-            off, error = min(offs[:3])
+            sides = [each for each in offs[:3] if each[1] < math.inf]  # none beyond a limit
+            off, error = min(sides, default=(0.0, math.inf))
             if off > noise:  # a kink may be closer than the steps that agree
                 off, error = min([(off, error), *(each for each in offs[3:] if each[1] <= 1e-3 * size)])
             if not sharp(output, dict(zip(point.outputs, base, strict=True))):
@@ -195,8 +202,8 @@ def check(native: Callable[..., Instance], name: str, kind: str, points: int, fm
 
         more, without = compared(point, report)
         count, unresolved = count + more, unresolved + without
-    # differences across a kink, or within the noise of an iteration, tell nothing
-    assert reached == points and unresolved <= 0.1 * count, (reached, unresolved, count)
+    # differences across a kink or a jump, or within the noise of an iteration, tell nothing
+    assert reached == points and unresolved <= 0.15 * count, (reached, unresolved, count)
 
 
 @pytest.mark.parametrize("kind", POINTS)

@@ -10,6 +10,8 @@ picks, `spacing`, and S0 the `reach` of the resistance [m], `D < P < S0`.
 
 from math import sqrt
 
+from .numerics.absent import absent
+
 
 def weaving_resistance(distance: float, resistance: float, least: float, reach: float) -> float:
     """Force that a pick resists with at a `distance` S from the one before it [N].
@@ -51,7 +53,7 @@ def fell_displacement(
     >>> round(1e6 * moved, 3), round(slope, 6)  # N
     (882.353, 0.833333)
     """
-    if resistance == 0.0:
+    if absent(resistance):
         return 0.0, 0.0
     farthest = weaving_resistance(spacing, resistance, least, reach) / stiffness
     if back and farthest > behind:

@@ -5,6 +5,7 @@ from math import pi
 from .belt_ends import Ends, moment_forces, turned_by
 from .belt_modes import dot, summed
 from .belt_moving import Belt, Instant
+from .numerics.absent import absent
 
 # integrals of the square of the slope of psi and of its product with that of the other end, with x and x^2
 SQUARE_ALONG = 7.6948373537988e-4
@@ -84,7 +85,7 @@ def end_coupling(
     guide = ends.guide
     head = ends.head
     f = end_forces(dragged * guide + twice * ends.guide_rate, pushed * guide, thrown * guide)
-    if belt.offset != 0.0:
+    if not absent(belt.offset):
         tilted = tilt_forces(belt.offset, pushed, thrown, belt.damping * at.velocity)
         f = summed(1.0, tilted, f)
     if ends.clamped == 0:
@@ -100,7 +101,7 @@ def end_coupling(
     across = CROSS_ALONG * pushed + CROSS_TWICE * thrown
     at_guide = at_guide + (SQUARE_ALONG * pushed + SQUARE_TWICE * thrown) * guide + across * head
     at_head = at_head + across * guide
-    if belt.gravity != 0.0:
+    if not absent(belt.gravity):
         weight = AREA * belt.mass * belt.gravity * at.length
         at_guide = at_guide + weight
         at_head = at_head + weight

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from .belt import weft_load
 from .belt_ends import FreeEnds, end_amplitudes
 from .belt_modes import Bow, bow_forces, summed, weight_forces
+from .numerics.absent import absent
 from .numerics.brackets import at_root
 from .numerics.motion import joined_rate, joined_value
 
@@ -138,7 +139,7 @@ def stands(path: Path) -> bool:
 def instant(belt: Belt, length: float, velocity: float, acceleration: float, tension: float) -> Instant:
     """The instant of a belt with that free length, its rates and its load."""
     moments, by_length = bow_forces(belt.bow, length)
-    if belt.gravity != 0.0:
+    if not absent(belt.gravity):
         weight = weight_forces(belt.mass * belt.gravity / belt.stiffness)
         moments = summed(length, weight, moments)
         by_length = summed(1.0, weight, by_length)

@@ -2,6 +2,8 @@
 
 from math import cos, fabs, sin
 
+from .numerics.absent import absent
+
 # Angle [rad] beyond which no mechanism is computed; it is rounded to 2e-7 rad there, after 3e8 revolutions
 FARTHEST = 2e9
 
@@ -28,10 +30,10 @@ def ramp(time: float, duration: float) -> tuple[float, float, float]:
     >>> ramp(2.0, 2.0)
     (1.0, 1.0, 0.0)
     """
-    if duration <= 0.0:
-        return time, 1.0, 0.0
     if time >= duration:
         return time - 0.5 * duration, 1.0, 0.0
+    if duration <= 0.0:
+        return time, 1.0, 0.0
     if time <= 0.0:
         return 0.0, 0.0, 0.0
     u = time / duration
@@ -69,7 +71,7 @@ def shaft_motion(
     turned = speed * equivalent
     velocity = speed * share
     acceleration = speed * rate
-    if ripple_amplitude == 0.0:
+    if absent(ripple_amplitude):
         return start_angle + turned, velocity, acceleration
     mean = start_angle + turned
     # cos(n start) - cos(n mean), without cancellation near the start

@@ -5,6 +5,7 @@ where Python would let them.
 """
 
 import ast
+from dataclasses import replace
 
 from .c_code import (
     AND,
@@ -85,7 +86,7 @@ REAL_FUNCTIONS = {
     ),
     **dict.fromkeys(("atan2", "copysign", "fmod", "pow"), 2),
 }
-AT_ROOT = "at_root"  # of the physics, which with dual numbers is one of dual.h
+OF_DUALS = {"at_root": REAL, "absent": TRUTH}  # of the physics, which with dual numbers are those of dual.h
 WHOLE_FUNCTIONS = ("floor", "ceil", "trunc")
 TRUTH_FUNCTIONS = ("isfinite", "isinf", "isnan")
 INSTEAD = {
@@ -195,14 +196,14 @@ class Expressions(Values):
         return Code(f"{asked} ? {within(then, OR)} : {within(otherwise, TERNARY)}", kind, TERNARY)
 
     def _call(self, node: ast.Call) -> Code:
-        if isinstance(node.func, ast.Name) and node.func.id == AT_ROOT and self.scope.numbers is DUAL:
-            return self._function(AT_ROOT, node.args)
+        name = node.func.id if isinstance(node.func, ast.Name) else ""
+        if name in OF_DUALS and self.scope.numbers is DUAL:
+            return replace(self._function(name, node.args), type=OF_DUALS[name])
         if self.is_ours(node):
             text, results = self.call(node)
             if len(results) != 1:
                 raise Untranslatable(node, f"{ast.unparse(node.func)} returns {len(results)} values, not one")
             return Code(text, results[0])
-        name = node.func.id if isinstance(node.func, ast.Name) else ""
         if name in self.scope.records:
             return self.built(node, name)
         if node.keywords:

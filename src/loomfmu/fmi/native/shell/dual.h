@@ -116,6 +116,12 @@ static inline dual dual_at_root(dual root, dual value, dual slope)
     return dual_made(root.value, root.tangent - DUAL_ALONG(1.0 / slope.value, value.tangent));
 }
 
+/* Whether a factor is 0 and stays so. */
+static inline bool dual_absent(dual factor)
+{
+    return factor.value == 0.0 && factor.tangent == 0.0;
+}
+
 /* A remainder: so many divisors less than the number. */
 static inline dual dual_rest(dual x, dual divisor, double rest)
 {
