@@ -271,3 +271,67 @@ def test_a_file_that_is_not_in_a_component_is_told(tmp_path: Path, system: str, 
     files = {"Motor.fmu": motor2(tmp_path).read_bytes(), "set.ssv": SET.format(4).encode()}
     with pytest.raises(LoomfmuError, match=said):
         ran(packed(tmp_path / "a.ssp", system, files))
+
+
+def bound(source: str, mapping: str = "") -> str:
+    place = f'<ssd:ParameterMapping source="resources/{mapping}"/>' if mapping else ""
+    return MOTOR.replace(
+        "/>",
+        f'><ssd:ParameterBindings><ssd:ParameterBinding source="{source}">{place}</ssd:ParameterBinding>'
+        "</ssd:ParameterBindings></ssd:Component>",
+    ).format("m")
+
+
+def mapping(space: str) -> bytes:
+    return f'<ParameterMapping xmlns="{space}" version="1.0"/>'.encode()
+
+
+FILES = {
+    "set.ssv": SET.format(3).encode(),
+    "old.ssv": SET.format(3).replace(NAMESPACES["ssv"], "http://x").encode(),
+    "none.ssm": mapping(NAMESPACES["ssm"]),
+    "old.ssm": mapping("http://x"),
+    "Readme.fmu": b"text",
+}
+
+
+@pytest.mark.parametrize(
+    ("elements", "units", "said"),
+    [
+        (bound("resources/old.ssv"), RPM, "old.ssv is not a parameter set but '{http://x}ParameterSet'"),
+        (bound("SystemStructure.ssd"), RPM, "SystemStructure.ssd is not a parameter set but '{http"),
+        (bound("resources/set.ssv", "old.ssm"), RPM, "old.ssm is not a parameter mapping but '{http://x}Par"),
+        (bound("").replace(' source=""', ""), RPM, "a.ssp: ParameterBinding has no source"),
+        (MOTOR.format("m"), RPM.replace('s="-1"', 's="-0.5"'), "unit 'rpm': its exponents must be whole"),
+        (
+            MOTOR.format("m"),
+            RPM.replace("0.10471975511965977", "0"),
+            "unit 'rpm': a unit has the factor 0 and",
+        ),
+        (
+            MOTOR.format("m").replace("Motor", "Readme"),
+            RPM,
+            "a.ssp: resources/Readme.fmu: not a readable FMU",
+        ),
+    ],
+)
+def test_a_file_that_is_something_else_is_told(tmp_path: Path, elements: str, units: str, said: str) -> None:
+    files = FILES | {"Motor.fmu": motor2(tmp_path).read_bytes()}
+    with pytest.raises(LoomfmuError) as raised:
+        ran(packed(tmp_path / "a.ssp", in_system(elements), files, units))
+    assert said in str(raised.value)
+
+
+def test_a_mapping_without_entries_takes_nothing_of_its_set(tmp_path: Path) -> None:
+    files = FILES | {"Motor.fmu": motor2(tmp_path).read_bytes()}
+    elements = bound("resources/set.ssv", "none.ssm")
+    assert not ran(packed(tmp_path / "a.ssp", in_system(elements), files)).scene.instances["m"].values
+
+
+def test_another_version_of_the_standard_is_refused(tmp_path: Path) -> None:
+    with zipfile.ZipFile(tmp_path / "a.ssp", "w") as archive:
+        archive.writestr(
+            "SystemStructure.ssd", f'<ssd:SystemStructureDescription version="9.0" name="n" {SPACES}/>'
+        )
+    with pytest.raises(LoomfmuError, match=r"is of SSP 9\.0; 1\.0 and 2\.0 are read"):
+        ran(tmp_path / "a.ssp")

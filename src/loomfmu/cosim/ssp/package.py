@@ -86,7 +86,7 @@ class Package:
         return name
 
     def _within(self, reference: str) -> tuple[str, "Package", str] | None:
-        """What a reference leads into, a package or an FMU in this package, and what that calls the file."""
+        """The package or FMU in this package that a reference leads into, and what that calls the file."""
         found = (name for name in self._inner if reference.startswith(f"{name}!/"))
         return next(((name, self._inner[name], reference[len(name) + 2 :]) for name in found), None)
 

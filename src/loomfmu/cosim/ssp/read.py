@@ -192,7 +192,11 @@ class _Reader:
         source = required(element, "source")
         if element.get("type", FMU) != FMU:
             raise LoomfmuError(f"{name}: {shown(source)} is not an FMU but {shown(element.get('type'))}")
-        loaded = fmus.load(self.package.unpacked(source))
+        file = self.package.unpacked(source)
+        try:
+            loaded = fmus.load(file)
+        except LoomfmuError as error:  # which names a file in the cache
+            raise LoomfmuError(str(error).replace(str(file), source)) from None
         fmu = self._with_units(loaded.with_units(stated, name), element, name)
         if name == "shaft" and "angle" in fmu.ports:
             fmu = fmu.as_shaft()

@@ -19,6 +19,8 @@ def structure(package: Package, depth: int = 0) -> Element:
     What that refers to is named after its package, so that `Package` finds it. Raises LoomfmuError.
     """
     root = package.root(SSD_FILE)
+    if not (version := root.get("version", "1.0")).startswith(("1.", "2.")):
+        raise LoomfmuError(f"{SSD_FILE} is of SSP {version}; 1.0 and 2.0 are read")
     own = read_units(root.iterfind(full("ssd:Units")))
     for elements in list(root.iter(full("ssd:Elements"))):
         for place, component in enumerate(elements):

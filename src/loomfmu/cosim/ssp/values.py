@@ -46,15 +46,17 @@ def bound(element: Element, read: Read, units: Mapping[str, Definition]) -> Iter
     """
     for binding in element.iterfind(f"{full('ssd:ParameterBindings')}/{full('ssd:ParameterBinding')}"):
         inline = binding.find(f"{full('ssd:ParameterValues')}/{full('ssv:ParameterSet')}")
-        source = binding.get("source")
-        parameters = inline if inline is not None else read(source or "")
+        parameters = inline
+        if parameters is None:
+            source = required(binding, "source")
+            parameters = _of_kind("ssv:ParameterSet", "parameter set", source, read(source))
         targets = _mapping(binding, read)
         prefix = binding.get("prefix", "")
         for given in _values(parameters, units if inline is not None else {}):
             name = prefix + given.name
-            if not targets:
+            if targets is None:
                 yield replace(given, name=name)
-            for target, made, kept in targets.get(name, ()):
+            for target, made, kept in (targets or {}).get(name, ()):
                 yield replace(given, name=target, transformation=made, unit=None if kept else given.unit)
 
 
@@ -69,18 +71,27 @@ def _values(parameters: Element, units: Mapping[str, Definition]) -> Iterator[Gi
                 yield Given(required(parameter, "name"), kind, text, said)
 
 
-def _mapping(binding: Element, read: Read) -> dict[str, list[tuple[str, Linear, bool]]]:
-    """Return the variables that each name of a set stands for; nothing if names stand for themselves.
+def _of_kind(tag: str, kind: str, source: str, found: Element) -> Element:
+    """Return the root of a file. Raises LoomfmuError where it is another one: its values would be lost."""
+    if found.tag != full(tag):
+        raise LoomfmuError(f"{source} is not a {kind} but {shown(found.tag)}")
+    return found
+
+
+def _mapping(binding: Element, read: Read) -> dict[str, list[tuple[str, Linear, bool]]] | None:
+    """Return the variables that each name of a set stands for; None if names stand for themselves.
 
     Each comes with what is made of the value, and with whether its number stays in its own unit.
     """
     place = binding.find(full("ssd:ParameterMapping"))
     if place is None:
-        return {}
-    source = place.get("source")
-    mapping = place.find(full("ssm:ParameterMapping")) if source is None else read(source)
+        return None
+    mapping = place.find(full("ssm:ParameterMapping"))
+    if mapping is None:
+        source = required(place, "source")
+        mapping = _of_kind("ssm:ParameterMapping", "parameter mapping", source, read(source))
     targets: dict[str, list[tuple[str, Linear, bool]]] = {}
-    for entry in mapping.iterfind(full("ssm:MappingEntry")) if mapping is not None else ():
+    for entry in mapping.iterfind(full("ssm:MappingEntry")):
         name = required(entry, "source")
         made = transformed(entry, f"the mapping of {name}")
         targets.setdefault(name, []).append((required(entry, "target"), made, suppressed(entry)))

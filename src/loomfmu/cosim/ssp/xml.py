@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable
 from xml.etree.ElementTree import Element, SubElement
 
-from ...errors import LoomfmuError, shown
+from ...errors import LoomfmuError, shown, within
 from ...fmi.description.model_description import FMI3_TYPES
 from ...fmi.description.parameter_sets import SSC, SSV
 from ...fmi.description.references import FMI_TYPES
@@ -91,11 +91,20 @@ def read_units(sections: Iterable[Element]) -> dict[str, Definition]:
         for unit in section.iterfind(full("ssc:Unit")):
             base = unit.find(full("ssc:BaseUnit"))
             if base is not None:
-                exponents = tuple(int(real(base, name, 0.0)) for name in BASES)
-                found[unit.get("name", "")] = Definition(
-                    exponents, real(base, "factor", 1.0), real(base, "offset", 0.0)
-                )
+                with within(f"unit {shown(name := unit.get('name', ''))}"):
+                    found[name] = _defined(base)
     return found
+
+
+def _defined(base: Element) -> Definition:
+    """The definition of a unit. Raises LoomfmuError."""
+    exponents = [real(base, name, 0.0) for name in BASES]
+    if not all(each.is_integer() for each in exponents):
+        raise LoomfmuError("its exponents must be whole numbers")
+    try:
+        return Definition(tuple(map(int, exponents)), real(base, "factor", 1.0), real(base, "offset", 0.0))
+    except ValueError as error:
+        raise LoomfmuError(str(error)) from None
 
 
 def transformed(element: Element, where: str) -> Linear:
