@@ -153,9 +153,9 @@ LONG = {
 
 def printing() -> Iterator[Any]:
     """Commands, the last of their block, with what a page says that they print."""
-    shown = r"^```sh\n([^`]*)```\n\n(?:(?!```)(?:.+\n)+\n)?```text\n(.*?)^```$"
+    shown = r"^```sh\n([^`]*)```\n\n(?:(?:(?!```).+\n)+\n)?```text\n([^`]*)^```$"
     for page, name in zip(PAGES, NAMES, strict=True):
-        for command, text in re.findall(shown, page.read_text(), re.DOTALL | re.MULTILINE):
+        for command, text in re.findall(shown, page.read_text(), re.MULTILINE):
             program, *arguments = shlex.split(command.splitlines()[-1], comments=True)
             if program == "loomfmu" and name != "docs/own_claim.md":  # whose scene is on that page
                 slow = [pytest.mark.slow] if LONG.intersection(arguments) else []
