@@ -124,6 +124,20 @@ def test_a_picture_says_which_revolution_and_what_its_colours_mean(copied: Path)
     assert "buckled" not in shown and not any(each.startswith("worst value") for each in shown if each)
 
 
+def test_a_long_title_has_several_lines() -> None:
+    """It ran out of the picture."""
+    size, title = (
+        (600.0, 500.0),
+        "WL680-3600, weave 10011001/11001100/01100110/00110011, 450 rev/min: revolution 2",
+    )
+    drawing, (_width, height) = shapes.headed(f"{title}, {title}", {}, [], size)
+    lines = [each.text for each in drawing if isinstance(each, shapes.Text)]
+    assert " ".join(lines) == f"{title}, {title}" and len(lines) > 1
+    assert all(len(each) * shapes.CHARACTER < size[0] for each in lines) and height > size[1] + 18.0 * len(
+        lines
+    )
+
+
 def test_a_legend_names_what_is_drawn_and_nothing_else(
     demo: Trace, fast: Trace, written: Written, tmp_path: Path
 ) -> None:

@@ -190,7 +190,9 @@ def test_the_belt_in_motion_bends_where_the_trace_has_it(
 
 def times(page: Any, belt: str) -> float:
     """How many times the deflection of a belt in motion is drawn."""
-    return float(page.inner_text(f'#motion-belt-{belt} output[data-value="{belt}.magnified"]'))
+    shown = page.inner_text(f'#motion-belt-{belt} output[data-value="{belt}.magnified"]')
+    assert shown == f"{float(shown):g}"  # 20 times, not 20.0
+    return float(shown)
 
 
 def test_the_belt_in_motion_is_drawn_as_it_bends(tmp_path: Path, opened: Open) -> None:

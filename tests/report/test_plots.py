@@ -276,6 +276,18 @@ def test_a_picture_of_two_traces_has_the_bounds_of_both(
     assert of <= speeds and "bound 0.1" in margins
 
 
+def test_a_report_of_two_traces_has_the_bounds_of_both(demo: Trace, fast: Trace) -> None:
+    """The bound of the worse one alone let the other seem to fail."""
+    section = plots.section(Subject([demo, fast]))
+    assert section and section.data
+    speeds, margins = (
+        section.data["signals"][f"belt.{each}"]["bounds"] for each in ("speed_limit", "margin")
+    )
+    of = {f"bound 600 rev/min of {demo.path.name}": True, f"bound 700 rev/min of {fast.path.name}": False}
+    assert {each["text"]: each["holds"] for each in speeds} == of
+    assert [each["text"] for each in margins] == ["bound 0.1", ""]  # said once
+
+
 def test_a_legend_covers_no_curve(copied: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     drawn: list[Any] = []
     monkeypatch.setattr(pictures, "save", lambda figure, path, *_more: (drawn.append(figure), path)[1])

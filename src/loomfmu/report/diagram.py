@@ -254,6 +254,7 @@ def round_(rows: Sequence[Row], revolution: Revolution, marks: Sequence[Mark]) -
     """Rows as rings, the first one outside, clockwise from 0 deg at the top; the claims around them."""
     width = (OUTER - INNER) / len(rows)
     drawing: list[Shape | Text] = []
+    names: list[Text] = []
     for degrees in range(0, 360, 30):
         angle = math.radians(degrees)
         spoke = [on_circle(CENTRE, radius, angle) for radius in (INNER, OUTER)]
@@ -268,7 +269,8 @@ def round_(rows: Sequence[Row], revolution: Revolution, marks: Sequence[Mark]) -
             for low, high in revolution.intervals[row.name, bar.label]:
                 sector = ring(CENTRE, outer - 0.85 * width, outer - 0.15 * width, low, high)
                 drawing.append(Shape(sector, bar.role, title=_title(row, bar, (low, high))))
-        drawing.append(Text((CENTRE[0] + 3.0, CENTRE[1] - outer + 0.5 * width + 4.0), row.label, "text"))
+        names.append(Text((CENTRE[0] + 3.0, CENTRE[1] - outer + 0.5 * width + 4.0), row.label, "text"))
+    drawing += names  # in front of all rings
     for mark in marks:
         x, y = on_circle(CENTRE, OUTER + 9.0, mark.angle)
         drawing.append(mark.drawn(x, y - 6.0, y + 6.0))

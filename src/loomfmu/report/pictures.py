@@ -13,7 +13,7 @@ from ..errors import LoomfmuError, listed
 from ..files import Kind, check_target, starts_with, write_file
 from ..traces import Trace, Verdict, plotting
 from .extents import extent
-from .section import labels
+from .section import bounds_of, labels
 
 MAKER = "loomfmu"  # that a picture of ours names
 
@@ -169,17 +169,9 @@ def _check_shown(limits: tuple[float, float], values: tuple[float, float], name:
 
 
 def _bounds(traces: Sequence[Trace], names: Sequence[str]) -> dict[str, Verdict]:
-    """The verdicts on signals, or on their held extremes, by what is said of their bounds."""
-    found: dict[str, dict[str, Verdict]] = {}
-    for label, trace in zip(labels(traces), traces, strict=True):
-        for each in trace.verdicts:
-            curve = next((n for n in (each.signal, plotting.curve_of(trace, each.signal)) if n in names), "")
-            if curve and math.isfinite(each.bound) and each.unit == trace.unit(curve):
-                found.setdefault(f"bound {each.shown(each.bound)}", {}).setdefault(label, each)
-    return {
-        text if len(of) == len(traces) else f"{text}\nof {listed(of)}": next(iter(of.values()))
-        for text, of in found.items()
-    }
+    """A verdict for each bound on signals, by what is said of it."""
+    found = bounds_of(traces, names)
+    return {"\nof ".join(filter(None, key)): verdicts[0][1] for key, verdicts in found.items()}
 
 
 @plotting.fixed_style()

@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..physics.belt import NO_LIMIT
-from ..traces import Trace, Verdict
+from ..traces import Trace
 from ..traces.excerpt import READ
 from ..traces.plotting import SPEED, curve_of, known
-from .section import Section, Subject, labels, spread
+from .section import Section, Subject, bounds_of, labels, spread
 from .templates import template
 
 Floats = NDArray[np.float64]
@@ -87,15 +87,13 @@ def section(subject: Subject) -> Section | None:
     names = list(dict.fromkeys(name for trace in subject.traces for name in trace))
     if not names:
         return None
-    verdicts = subject.trace.verdicts
-    judged = [curve_of(subject.trace, verdict.signal) for verdict in verdicts]
+    judged = [curve_of(subject.trace, verdict.signal) for verdict in subject.trace.verdicts]
     claimed = [name for name in dict.fromkeys(judged) if name in names]
     finer = _points(subject, claimed)
     coarser = _points(subject, [name for name in names if name not in claimed])
     rows, signals = [], {}
     for name in names:
-        its = [each for each, curve in zip(verdicts, judged, strict=True) if name in (each.signal, curve)]
-        row, signals[name] = _signal(subject, name, its, finer if name in claimed else coarser)
+        row, signals[name] = _signal(subject, name, finer if name in claimed else coarser)
         rows.append(row | {"chosen": name in claimed})
     names_of_curves = LIVE if subject.live else labels(subject.traces)
     along = [_along(subject, trace) for trace in subject.traces]
@@ -123,9 +121,7 @@ def _points(subject: Subject, names: list[str]) -> int:
     return min(MOST_POINTS, max(FEWEST_POINTS, SHARE // max(1, curves)))
 
 
-def _signal(
-    subject: Subject, name: str, verdicts: list[Verdict], points: int
-) -> tuple[dict[str, Any], dict[str, Any]]:
+def _signal(subject: Subject, name: str, points: int) -> tuple[dict[str, Any], dict[str, Any]]:
     """A signal as a row of the table, and what the page draws of it."""
     source = next(trace for trace in subject.traces if name in trace)
     factor, unit = source.displayed(name)
@@ -154,18 +150,17 @@ def _signal(
         "about": about,
         "summaries": summaries,
     }
-    whose = f" of {labels(subject.traces)[subject.shown]}" if len(subject.traces) > 1 else ""
     bounds = [
         {
             "value": each.bound / factor,
-            "text": f"bound {each.shown(each.bound)}{whose}",
+            "text": "" if number else " of ".join(filter(None, key)),
             "holds": each.holds,
             "sense": each.sense,
             "worst": each.worst / factor,
-            "at": subject.position(each),
+            "at": subject.position(each) if place == subject.shown else None,
         }
-        for each in verdicts
-        if each.unit == source.unit(name) and math.isfinite(each.bound)
+        for key, verdicts in bounds_of(subject.traces, [name]).items()
+        for number, (place, each) in enumerate(verdicts)
     ]
     return row, {
         "unit": row["unit"],

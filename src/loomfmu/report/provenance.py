@@ -50,7 +50,11 @@ def section(subject: Subject) -> Section:
 
 def _shown(key: str, value: Any) -> str:
     """A fact with its unit; traces of older versions have it in the text."""
-    return f"{value} s" if key in ("duration", "step") and units.is_plain(value) else str(value)
+    if not units.is_plain(value):
+        return str(value)
+    if key == "revolutions":
+        return f"{float(value):g}"
+    return f"{value} s" if key in ("duration", "step") else str(value)
 
 
 def _given(trace: Trace, key: str, text: Any) -> str:

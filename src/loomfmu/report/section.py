@@ -11,7 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import listed
 from ..traces import Trace, Verdict
+from ..traces.plotting import curve_of
 from .templates import text
 
 TURN = 2.0 * math.pi
@@ -161,3 +163,26 @@ def labels(traces: Sequence[Trace]) -> list[str]:
         name if names.count(name) == 1 else str(trace.given)
         for trace, name in zip(traces, names, strict=True)
     ]
+
+
+def bounds_of(
+    traces: Sequence[Trace], signals: Sequence[str]
+) -> dict[tuple[str, str], list[tuple[int, Verdict]]]:
+    """Return the verdicts on signals, or on their held extremes, with the places of their traces.
+
+    They are by their bounds, and by the traces that have these if not all do.
+    """
+    found: dict[str, list[tuple[int, Verdict]]] = {}
+    for place, trace in enumerate(traces):
+        for each in trace.verdicts:
+            curve = next(
+                (name for name in (each.signal, curve_of(trace, each.signal)) if name in signals), ""
+            )
+            if curve in trace and math.isfinite(each.bound) and each.unit == trace.unit(curve):
+                found.setdefault(f"bound {each.shown(each.bound)}", []).append((place, each))
+    names = labels(traces)
+    owners = {said: list(dict.fromkeys(names[place] for place, _each in of)) for said, of in found.items()}
+    return {
+        (said, "" if len(owners[said]) == len(traces) else listed(owners[said])): of
+        for said, of in found.items()
+    }

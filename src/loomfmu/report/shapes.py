@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from html import escape
+from textwrap import wrap
 from typing import Any, Literal
 
 import numpy as np
@@ -85,8 +86,10 @@ def headed(
 ) -> tuple[Drawing, tuple[float, float]]:
     """A drawing below its title and what its roles mean, by their labels, and its new size."""
     x, y = MARGIN, 1.5 * LINE
-    above: list[Shape | Text] = [Text((x, y), title)]
-    y += LINE
+    above: list[Shape | Text] = []
+    for line in wrap(title, int((size[0] - 2.0 * MARGIN) / CHARACTER)):
+        above.append(Text((x, y), line))
+        y += LINE
     for label, role in legend.items():
         width = 24.0 + CHARACTER * len(label)
         if x + width > size[0]:
@@ -143,7 +146,7 @@ def _plot(axes: Any, each: Shape | Text, order: int) -> None:
     colour = COLOURS[each.role]
     if isinstance(each, Text):
         align = {"start": "left", "middle": "center", "end": "right"}[each.anchor]
-        halo = [patheffects.withStroke(linewidth=2.0, foreground="#ffffff")]
+        halo = [patheffects.withStroke(linewidth=4.0, foreground="#ffffff")]
         axes.text(
             *each.place,
             each.text,
@@ -165,7 +168,7 @@ def _plot(axes: Any, each: Shape | Text, order: int) -> None:
 def _svg_file(drawing: Drawing, size: tuple[float, float], title: str) -> str:
     rules = "".join(f".{role}{{fill:{colour}}}" for role, colour in COLOURS.items())
     lines = "".join(f"polyline.{role}{{fill:none;stroke:{COLOURS[role]}}}" for role in ("curve", "line"))
-    lines += "text{paint-order:stroke;stroke:#ffffff;stroke-width:3px}"
+    lines += "text{paint-order:stroke;stroke:#ffffff;stroke-width:7px;stroke-linejoin:round}"
     width, height = (_short(length) for length in size)
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}"'

@@ -185,7 +185,7 @@ def between(tracks: Tracks, belt: Belt) -> Figure:
         f"belt-{belt.name}",
         title("Belt in motion" if motion else "Belt between guide and head", belt.name, "belt"),
         f"The free section of the belt between its guide and the rapier head{does}.",
-        [*values, Value("drawn", motion.magnified, "times as large")] if motion else values,
+        [*values, Value("drawn", motion.magnified, "times as large", steps=True)] if motion else values,
         f"{note} Dark orange: outside the guide and compressed.",
     )
 

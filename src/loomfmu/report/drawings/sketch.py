@@ -25,6 +25,7 @@ class Value:
     track: str = ""
     unit: str = ""
     claim: int | None = None
+    steps: bool = False  # it changes in steps, and is shown without a decimal of 0
     text: str = ""  # at the still position
 
 
@@ -192,7 +193,7 @@ class Sketch:
         shown = [
             replace(
                 each,
-                text=f"{self.tracks.at(each.track):.1f}"
+                text=f"{self.tracks.at(each.track):.1f}".removesuffix(".0" * each.steps)
                 if each.claim is None
                 else verdicts[each.claim].shown_worst,
             )

@@ -47,7 +47,7 @@
     ...followers("shown", (element, [amount]) => element.toggleAttribute("hidden", !(amount > 0))),
     ...followers("bow", (element, at) => element.setAttribute("points", bow(...at))),
     ...followers("curve", (element, at) => element.setAttribute("points", curve(...at))),
-    ...followers("value", (element, [amount]) => { element.textContent = amount.toFixed(1); }),
+    ...followers("value", (element, [amount]) => { element.textContent = amount.toFixed(1).replace("steps" in element.dataset ? /\.0$/ : "", ""); }),
   ];
   function draw(position) {
     const turns = (position - first) / span;

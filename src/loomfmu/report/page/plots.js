@@ -64,8 +64,9 @@
     ctx.save();
     ctx.globalAlpha = 0.15;
     ctx.fillStyle = colour("--fails");
-    for (const { value, sense } of bounds) {
-      if (value === null || !sense) continue;
+    for (const [place, { value, sense }] of bounds.entries()) {
+      const shaded = bounds.slice(0, place).some(other => other.value === value && other.sense === sense);
+      if (value === null || !sense || shaded) continue;
       const edge = within(y(value), top, top + height);
       ctx.fillRect(left, sense > 0 ? edge : top, width, sense > 0 ? top + height - edge : edge - top);
     }
