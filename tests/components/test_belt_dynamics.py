@@ -188,8 +188,7 @@ def test_the_integration_is_of_order_six():
 
 def test_a_belt_that_is_held_adds_nothing_to_what_its_work_leaves_unexplained(belt_in_c):
     folds = Loom(belt_in_c, 600.0, steps=720, machine="WL450-5400")
-    ends = {"guide_end": 2, "head_end": 2}
-    lost = Loom(belt_in_c, 80.0, steps=720, machine="WL450-4600", bow_of=SPAN, **ends)
+    lost = Loom(belt_in_c, 50.0, steps=720, machine="WL450-4600")
     for loom, problem in ((folds, 1), (lost, 2)):
         through = []
         for stroke in (1, 2):  # both strokes of the next revolution are balanced as those before
@@ -326,10 +325,7 @@ def test_a_belt_too_long_for_its_modes_says_so_and_does_not_count(belt_in_c, bey
 
 SLOW = {
     "loom.machine": "WL450-4600",
-    "shaft.speed": "80 rev/min",
-    "belt_motion.guide_end": "play",
-    "belt_motion.head_end": "guided",
-    "belt_motion.bow_of": "span",
+    "shaft.speed": "50 rev/min",
     "steps_per_revolution": 720,
     "revolutions": 1,
 }
@@ -344,7 +340,7 @@ def test_a_belt_that_cannot_be_followed_has_not_folded_and_its_claim_is_undecide
     assert not trace["belt_motion.followed"][-1]
     assert not trace["belt_motion.folded"][-1]
     # the largest deflection was followed long before; twice as many steps, which are followed, give it, too
-    assert trace["belt_motion.largest_deflection"][-1] == pytest.approx(3.617e-4, rel=1e-4)
+    assert trace["belt_motion.largest_deflection"][-1] == pytest.approx(1.46392e-3, rel=1e-5)
 
 
 def test_the_lightest_belt_is_followed_and_a_lighter_one_refused(belt_in_c):
@@ -429,7 +425,7 @@ def test_a_margin_on_the_way_back_is_known_between_the_samples(drawn):
         f"guide_end = '{guide}'\nhead_end = '{head}'\n"
         '[[claims]]\nkind = "above"\nsignal = "belt_motion.margin"\nbound = 0.5\n'
     )
-    window = 'window = ["235 deg", "264 deg"]\n'
+    window = 'window = ["235 deg", "275 deg"]\n'
     found = evaluate(parse(text + window, "found", {"steps_per_revolution": 90})).claims[0]
     finer = evaluate(parse(text + window, "finer", {"steps_per_revolution": 720})).claims[0]
     assert abs(found.worst - finer.worst) <= found.error

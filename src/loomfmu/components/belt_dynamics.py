@@ -28,7 +28,6 @@ from ..physics.belt_moving import (
     pushed,
     stands,
 )
-from ..physics.belt_reach import may_reach
 from ..physics.belt_rest import rest, rests
 from ..physics.belt_shape import shape_at, shape_extremes
 from ..physics.belt_steps import advance, fits, foresee, pieces, stages_of, suited, worked
@@ -244,7 +243,8 @@ class BeltDynamics(Component):
     )
     compression: float = output(
         "N",
-        "Compression of the belt at the head, relieved by the head's lag while the belt is followed",
+        "Compression of the belt at the head, relieved by the head's lag; without meaning in the last degrees"
+        " before the belt is back in its guide",
         nominal=100.0,
     )
     deflection: float = output(
@@ -256,8 +256,8 @@ class BeltDynamics(Component):
     )
     deflection_known: bool = output(
         "1",
-        "The deflection is known now: its motion is followed, on the way back until it cannot exceed"
-        " largest_at_risk, and the free length is at most 5 times bow_length if the belt has the bow",
+        "The deflection is known now: its motion is followed, and the free length is at most 5 times"
+        " bow_length if the belt has the bow",
         start=True,
     )
     largest_deflection: float = output(
@@ -352,7 +352,7 @@ class BeltDynamics(Component):
     outside: bool = state("1", "The free length is above the shortest one", start=False)
     held: bool = state("1", "The belt is held until it is back in its guide", start=False)
     lost: bool = state("1", "It is held because its motion could not be followed", start=False)
-    released: bool = state("1", "It is held, and counts for no extreme", start=False)
+    released: bool = state("1", "It is held because its push is over", start=False)
     mode: Sequence[float] = array(state("m", f"Amplitude of the {each} mode") for each in NUMBERS)
     mode_rate: Sequence[float] = array(state("m/s", f"Rate of the {each} mode") for each in NUMBERS)
     guide_shape: float = auxiliary("m", "Amplitude of the end shape at the guide")
@@ -654,10 +654,6 @@ class BeltDynamics(Component):
                 return
             if load <= 0.0 and load_before > 0.0 and self.lets_go():
                 self.let_it_go()
-                self.largest_known = False
-                return
-            if self.over(belt, at, load):
-                self.let_it_go()
                 return
         self.gauss = a
         self.halvings = halvings
@@ -727,16 +723,13 @@ class BeltDynamics(Component):
         """Return whether the belt is followed while its head is pushed alone."""
         return self.only_push or self.board != NO_BOARD
 
-    def over(self, belt: Belt, at: Instant, load: float) -> bool:
-        """Return whether a belt on its way back cannot be deflected further than it was while pushed."""
-        return may_reach(belt, at, self.energy, load) <= self.largest_at_risk
-
     def let_it_go(self) -> None:
-        """Hold the belt, as if it were straight, until it is back in its guide."""
+        """Hold the belt, as if it were straight, from the end of the push until it is back in its guide."""
         self.go_in()
         self.outside = True
         self.held = True
         self.released = True
+        self.largest_known = False
 
     def follows(self, length: float) -> bool:
         """Return whether six modes can follow the bow of a belt of that free length."""
