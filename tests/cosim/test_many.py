@@ -188,6 +188,9 @@ def test_live_fmus_run_row_by_row() -> None:
 
 def test_values_that_are_no_columns_are_refused() -> None:
     with prepare(belt()) as found:
+        for wrong in ([], [{"shaft.speed": 60.0}]):
+            with pytest.raises(LoomfmuError, match="the values must be a mapping, not list"):
+                found.evaluate_many(wrong)  # type: ignore[arg-type]
         with pytest.raises(LoomfmuError, match=r"differ in number: 2 of shaft\.speed, 1 of belt\.head_mass"):
             found.evaluate_many({"shaft.speed": [60.0, 61.0], "belt.head_mass": [0.1]})
         with pytest.raises(LoomfmuError, match=r"shaft\.speed = '600 rpm' is not a sequence"):

@@ -123,6 +123,11 @@ class Many:
 
     def __init__(self, values: Mapping[str, Any]):
         """Take the values. Raises LoomfmuError unless they are sequences of equal length."""
+        if not isinstance(values, Mapping):
+            raise LoomfmuError(
+                f"the values must be a mapping, not {type(values).__name__}:"
+                ' write {"shaft.speed": [60.0, 70.0]}, a sequence for each key'
+            )
         self._values = {key: _listed(key, given) for key, given in values.items()}
         lengths = {key: len(given) for key, given in self._values.items()}
         if len(set(lengths.values())) > 1:
