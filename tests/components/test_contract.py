@@ -182,10 +182,12 @@ def test_values_outside_their_limits_are_refused(component):
             assert message.startswith(f"{component.__name__}.{variable.name} = {value / factor:.7g}")
             if variable.choices:
                 assert f"must be {numbered(variable.choices, range(1, len(variable.choices) + 1))}" in message
-            else:
+            elif math.isfinite(value):
                 assert f"is outside [{low:.7g}, {high:.7g}]" in message
+                assert variable.display == "1" or message.endswith(f" {variable.display}")
+            else:
+                assert message.endswith("is not a finite number")
             assert "\n" not in message
-            assert variable.display == "1" or message.endswith(f" {variable.display}")
 
 
 @pytest.mark.no_cover

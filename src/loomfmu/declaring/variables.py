@@ -138,14 +138,14 @@ class Variable:
         """Return the fault of a value, or an empty text."""
         low = -math.inf if self.minimum is None else self.minimum
         high = math.inf if self.maximum is None else self.maximum
-        if not math.isfinite(value):
-            return f"{self.name} = {value} is not a finite number"
-        if low <= value <= high:
+        if low <= value <= high and math.isfinite(value):
             return ""
         if self.choices:
             return (
                 f"{self.name} = {value:.7g} must be {numbered(self.choices, range(1, len(self.choices) + 1))}"
             )
+        if not math.isfinite(value):
+            return f"{self.name} = {value} is not a finite number"
         return f"{self.name} = {units.show(value, self.display)} is outside {self.range}"
 
 
