@@ -190,7 +190,10 @@ def test_a_connector_states_the_unit_of_an_array(tmp_path: Path) -> None:
             connection("a.steps", "b.mode"),
             "connection a.steps -> b.mode: an output cannot give the value of a",
         ),
-        (connection("a.steps", "b.hidden"), "connection to b.hidden: a local cannot be connected"),
+        (
+            connection("a.steps", "b.hidden"),
+            "connection to b.hidden: its causality is local, so it cannot be connected",
+        ),
     ],
 )
 def test_what_takes_no_value_of_a_connection_is_told(tmp_path: Path, wire: str, said: str) -> None:

@@ -177,7 +177,9 @@ def _causality(node: Node, instances: dict[str, Instance], names: Names) -> str:
     array = fmu.elements(node[1])
     causality = (array or [fmu.port(fmu.name_of(node[1]), f"connection to {name}")])[0].causality
     if causality not in ("output", "input", "parameter"):
-        raise LoomfmuError(f"connection to {_dotted(node)}: a {causality} cannot be connected")
+        raise LoomfmuError(
+            f"connection to {_dotted(node)}: its causality is {causality}, so it cannot be connected"
+        )
     return causality
 
 
