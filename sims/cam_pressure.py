@@ -1,6 +1,9 @@
 """A claim on the pressure between the cam of a spline-cam dobby and its roller."""
 
+import itertools
 import math
+
+import numpy as np
 
 from loomfmu.claim import Name, OwnClaim, Quantity, Signals, argument
 from loomfmu.design import cam, contact
@@ -15,21 +18,31 @@ class CamPressure(OwnClaim):
     shaft: str = argument(Name(), "shaft")
     heald: str = argument(Name(), "heald_1")
 
-    needs = ("shaft.velocity", "heald.lift")
+    needs = ("shaft.velocity", "shaft.acceleration", "heald.lift")
 
     def value(self, run: Signals) -> float:
-        """Return the highest pressure [Pa]; NaN where the roller lifts off."""
+        """Return the highest pressure [Pa] at any speed and acceleration of the run.
+
+        NaN where the roller may lift off: how it comes down, Hertz does not say.
+        """
         profile = cam.design_cam()  # Korolev, Appendix 2
         stroke, mass = (run.parameter(f"{self.heald}.{name}") for name in ("stroke", "frame_mass"))
         lever = stroke / (profile.highest_radius - profile.lowest_radius)
-        speed = run[f"{self.shaft}.velocity"]
-        # at any angle the force is linear in the square of the speed: it is highest at an end of its range
+        signals = (np.abs(run[f"{self.shaft}.velocity"]), run[f"{self.shaft}.acceleration"])
+        # the force is linear in the acceleration and the square of the speed: at any angle it is highest, and
+        # lowest, at ends of their ranges
+        ends = ((float(each.min()), float(each.max())) for each in signals)
         contacts = [
             contact.radial_contact(
-                profile, speed=each, mass=mass * lever**2, load=self.load, width=self.width
+                profile,
+                speed=speed,
+                acceleration=acceleration,
+                mass=mass * lever**2,
+                load=self.load,
+                width=self.width,
             )
-            for each in (float(speed.min()), float(speed.max()))
+            for speed, acceleration in itertools.product(*ends)
         ]
         if min(each.force.min() for each in contacts) <= 0.0:
-            return math.nan  # how the roller comes down, Hertz does not say
+            return math.nan
         return max(each.highest_pressure for each in contacts)

@@ -49,6 +49,15 @@ def test_force_and_speed_of_a_radial_roller_are_those_of_its_path(on_roller):
     assert found.sliding_speed == pytest.approx(np.real((body - centre) * np.conj(tangent)), rel=1e-6)
 
 
+def test_a_cam_that_speeds_up_pushes_its_roller_where_that_rises():
+    cam = design_cam(SMOOTH)
+    still, sped = (radial_contact(cam, **OF_RADIAL, acceleration=each) for each in (0.0, 800.0))
+    radius, place = np.hypot(*cam.path.T), np.unwrap(np.arctan2(cam.path[:, 1], cam.path[:, 0]))
+    first, _second = by_angle(radius, place)
+    more = 15.0 * first * 400.0 * np.hypot(1.0, first / radius)
+    assert sped.force - still.force == pytest.approx(more, rel=1e-6, abs=1e-6 * np.max(more))  # of the spline
+
+
 def test_a_round_cam_on_a_roller_has_the_pressure_of_two_cylinders():
     cam = design_cam(lift_law(lambda angle: np.cos(angle)), lowest_radius=0.1, highest_radius=0.1 + 1e-7)
     found = radial_contact(cam, **OF_RADIAL | {"speed": 0.0}, roller_modulus="70 GPa")

@@ -56,8 +56,11 @@ def test_all_claims_of_a_scene_hold(run: Run, tmp_path: Path, scene: str) -> Non
             assert not verbs, "the name states what must hold; what follows it names the quantity alone"
 
 
-def test_a_roller_that_lifts_off_has_no_pressure_to_claim(run: Run, tmp_path: Path) -> None:
-    scene = (SIMS / "cam_contact.toml").read_text().replace('load = "10 kN"', 'load = "100 N"')
+@pytest.mark.parametrize("kept", ['load = "100 N"', 'load = "10 kN"\n'])
+def test_a_roller_that_lifts_off_has_no_pressure_to_claim(run: Run, tmp_path: Path, kept: str) -> None:
+    scene = (SIMS / "cam_contact.toml").read_text().replace('load = "10 kN"', kept)
+    if "kN" in kept:  # with 0.45 the least force would be -2574 N, by the roller's own equation of motion
+        scene = scene.replace("[shaft]", "[shaft]\nripple_amplitude = 0.45\nripple_order = 10")
     (tmp_path / "light.toml").write_text(scene)
     (tmp_path / "cam_pressure.py").write_bytes((SIMS / "cam_pressure.py").read_bytes())
     done = run(tmp_path / "light.toml")

@@ -55,13 +55,15 @@ def radial_contact(
     mass: Quantity,
     load: Quantity,
     width: Quantity,
+    acceleration: Quantity = 0.0,
     modulus: Quantity = "206 GPa",
     roller_modulus: Quantity = "206 GPa",
 ) -> Contact:
     """Contact of a cam whose roller moves on a radial guide without friction.
 
     With r the radius of the roller's path over the cam's angle, `r' / r` is the tangent of the pressure angle
-    and r'' follows from the path's curvature. The force is `(load + mass r'' w^2) / cos(pressure angle)`.
+    and r'' follows from the path's curvature. The cam turns at w, with the acceleration a. The force is
+    `(load + mass (r'' w^2 + r' a)) / cos(pressure angle)`.
 
     Args:
         cam: from `cam.design_cam`
@@ -69,6 +71,7 @@ def radial_contact(
         mass: of all that the roller moves, reduced to it [kg]
         load: that presses the roller towards the cam's centre, such as a spring's [N]
         width: of the narrower of cam and roller [m]
+        acceleration: of the main shaft [rad/s2]; the cam has half of it
         modulus, roller_modulus: of elasticity [Pa]; Poisson's ratio is 0.3
 
     >>> from .cam import design_cam
@@ -81,7 +84,8 @@ def radial_contact(
     first = radius * np.tan(cam.pressure_angle)
     along = np.hypot(radius, first)
     second = (radius**2 + 2.0 * first**2 - along**3 / (cam.curvature_radius + cam.roller_radius)) / radius
-    pressed = read("contact_load", load) + read("moved_mass", mass) * second * turning**2
+    moved = second * turning**2 + first * 0.5 * read("acceleration", acceleration)
+    pressed = read("contact_load", load) + read("moved_mass", mass) * moved
     passing = turning * (along - cam.roller_radius)
     return _contact(cam, pressed / np.cos(cam.pressure_angle), passing, width, modulus, roller_modulus)
 

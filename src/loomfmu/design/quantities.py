@@ -31,6 +31,7 @@ def _free(unit: str, display: str, minimum: float, maximum: float, description: 
 # by their names in the design functions, with the limits that they have in scenes
 KNOWN = {
     "speed": replace(BELT["speed"], minimum=0.0),  # one way as the other
+    "acceleration": _free("rad/s2", "rad/s2", -1e9, 1e9, "Angular acceleration of the main shaft"),
     "clearance": BELT["guide_clearance"],
     "tension": BELT["yarn_tension"],
     "mass": BELT["head_mass"],
