@@ -60,7 +60,7 @@ value
 # %%
 class Shown:
     def _repr_html_(self):
-        return "<style>a\\n\\n{}</style><b>\\n\\nbold</b>"
+        return "<style>a\\n\\n{}</style><b>\\n\\nbold</b><table border=1 class=a><tr style=b></tr></table>"
 
 Shown()
 
@@ -79,7 +79,7 @@ def test_outputs_follow_their_cells(tmp_path: Path) -> None:
     page = (tmp_path / "out" / "small.md").read_text()
     assert page.startswith("# Title\n\nText.\n\n```python\nprint(")
     assert "value\n```\n\n```text\nsaid\n```\n\n```text\n0.25\n```\n" in page
-    assert '<div class="output">\n<b>\nbold</b>\n</div>' in page
+    assert '<div class="output">\n<b>\nbold</b><table><tr></tr></table>\n</div>' in page
     assert (tmp_path / "out" / "small_1.png").read_bytes()[:4] == b"\x89PNG" and "(small_1.png)" in page
     kept = nbformat.read(tmp_path / "out" / "small.ipynb", as_version=4)
     nbformat.validate(kept)

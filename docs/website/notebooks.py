@@ -85,6 +85,7 @@ def page(name: str, ran: list[Cell], folder: Path) -> str:
                 parts.append(f"![Figure {figures}]({name}_{figures}.png)")
             elif "text/html" in output:
                 plain = re.sub(r"<style.*?</style>", "", output["text/html"], flags=re.DOTALL)
+                plain = re.sub(r"<(table|tr)\b[^>]*>", r"<\1>", plain)  # as the site's other tables
                 lines = filter(str.strip, plain.splitlines())  # a blank one ends HTML in Markdown
                 parts.append('<div class="output">\n' + "\n".join(map(str.strip, lines)) + "\n</div>")
             else:
