@@ -161,7 +161,7 @@ bool settle(struct run *run, const double *question, struct verdict *verdict, do
         verdict->error = INFINITY;
         verdict->distance = distance_from_bound(verdict, sense);
     } else
-        estimate(verdict, sense, larger(larger(spread, left), least), spread, model);
+        estimate(verdict, sense, larger(larger(spread, left), least), spread, left);
     return true;
 }
 
