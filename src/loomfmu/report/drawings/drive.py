@@ -128,7 +128,7 @@ def figure(tracks: Tracks, drive: Drive) -> Figure:
         beside = {"A": (-13.0, 14.0), "B": (12.0, -5.0), "D": (0.0, -8.0)}.get(letter, (12.0, 15.0))
         sketch.letter(point, letter, beside)
     if drive.four_bar:
-        sketch.letter(hub, "G", (-13.0, 22.0))
+        sketch.letter(hub, "G", (5.0, -9.0))
     sketch.label(0.0, 0.0, "C", "end", (-12.0, 4.0))
     sketch.label(2.2 * BALL, 0.0, "shaft", "start", (5.0, 4.0))
     return sketch.figure(
