@@ -448,3 +448,16 @@ def test_carried_inputs_carry_their_directions(native):
     assert carried.derivative(["travel"], ["shaft_angle"], [1.0]) == (OK, [of_angle])
     _status, (of_velocity,) = carried.derivative(["travel"], ["shaft_velocity"], [1.0])
     assert of_velocity == pytest.approx(size * of_angle, rel=1e-12)
+
+
+def test_a_belt_without_play_leans_as_one_with_a_little(native):
+    instance = native("BeltDynamics")
+    given = {"guide_end": 2, "travel": 1.0, "velocity": 5.0, "guide_clearance": 0.0}
+    assert instance.set(**given) == OK and instance.enter(0.0) == OK
+    status, found = instance.derivative(["deflection"], ["guide_clearance"], [1.0])
+    at = []
+    for clearance in (0.0, 1e-7):
+        assert instance.write({"guide_clearance": clearance}) == OK
+        at.append(instance.read(["deflection"])[1][0])
+    assert status == OK
+    assert found[0] == pytest.approx((at[1] - at[0]) / 1e-7, rel=1e-3)  # the guide has no other side

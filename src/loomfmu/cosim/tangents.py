@@ -100,10 +100,16 @@ class Direction:
     seeds: Seeds
 
     def slope(self, function: Callable[[Recording], Sequence[float] | Floats]) -> Floats:
-        """Return the derivatives of numbers that are computed from the run, by its value.
+        """Return the derivatives of numbers that are computed from the run; to greater values at a kink."""
+        _below, above = self.sides(function)
+        return np.asarray(above)
 
-        At a kink they are those on the side of greater values. The samples move along their derivatives by
-        some millionths of their size, either way: the run itself is not repeated.
+    def sides(self, function: Callable[[Recording], Sequence[float] | Floats]) -> Floats:
+        """Return the derivatives of numbers that are computed from the run, by its value: two rows.
+
+        They are those on the side of lesser and of greater values, which differ at a kink alone. The samples
+        move along their derivatives by some millionths of their size, either way: the run itself is not
+        repeated.
         """
         here = self.recording
         sizes = np.max(np.abs(here.reals), axis=0)
@@ -117,10 +123,9 @@ class Direction:
             np.asarray(function(here if not side else self._moved(side * step)), dtype=float)
             for side in (-1.0, 0.0, 1.0)
         )
-        ahead, both = (after - at) / step, (after - before) / (2.0 * step)
+        behind, ahead, both = (at - before) / step, (after - at) / step, (after - before) / (2.0 * step)
         kinked = np.abs(ahead - both) > KINK * np.maximum(np.abs(ahead), np.abs(both))
-        found: Floats = np.where(kinked, ahead, both)
-        return found
+        return np.where(kinked, [behind, ahead], both)
 
     def _moved(self, step: float) -> Recording:
         here, seeds = self.recording, self.seeds

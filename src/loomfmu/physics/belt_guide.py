@@ -7,6 +7,7 @@ from .belt_ends import OTHER, OWN, end_slopes, turning
 from .belt_modes import dot, first_modes, size, summed
 from .belt_motion import ends_at, free_turn
 from .belt_moving import Belt, Instant
+from .numerics.absent import absent
 from .numerics.brackets import at_root
 from .numerics.motion import met
 
@@ -36,7 +37,7 @@ def leans_on(belt: Belt, at: Instant, q: list[float], v: list[float]) -> int:
     """Side of its guide on which the belt leans, 1 or -1; 0 if it does not."""
     turn, _rate = free_slope(belt, at, q, v)
     if belt.leaning and fabs(turn) >= free_turn(belt, at.length):
-        return -1 if turn < 0.0 and belt.clearance > 0.0 else 1
+        return -1 if turn < 0.0 and not absent(belt.clearance) else 1
     return 0
 
 

@@ -171,16 +171,16 @@ def without_gradient(scene: Scene, verdict: Verdict) -> str:
 
 
 def slopes_of(run: Derived, claims: int) -> Floats:
-    """The slopes of the distances of so many claims in the directions of a run, (claims, directions).
+    """The slopes of the distances of so many claims in the directions of a run, (sides, claims, directions).
 
-    They are those of the samples: known to about 1e-3 where the signal of a claim has no rate, and NaN where
-    they are not known.
+    The sides, of lesser and of greater values, differ at a kink alone. The slopes are those of the samples:
+    known to about 1e-3 where the signal of a claim has no rate, and NaN where they are not known.
     """
 
     def distances(trace: Signals) -> list[float]:
         return [each.sense * (each.worst - each.bound) for each in run.judged(trace)[:claims]]
 
-    return np.stack([each.slope(distances) for each in run.directions], axis=1)
+    return np.stack([each.sides(distances) for each in run.directions], axis=-1)
 
 
 def number_of(verdict: Verdict, claim: bool = True) -> float:

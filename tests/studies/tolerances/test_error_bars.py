@@ -11,7 +11,7 @@ import loomfmu
 from loomfmu import LoomfmuError, Result, Trace
 from loomfmu.cosim.scenes.scene import parse
 from loomfmu.studies.tolerances.distributions import distribution_of
-from loomfmu.studies.tolerances.error_bars import _deviations
+from loomfmu.studies.tolerances.error_bars import _bar
 
 SIMS = Path(__file__).parents[3] / "sims"
 DEMO = "wl680_3600"
@@ -123,7 +123,31 @@ def test_values_measured_together_vary_together(tmp_path: Path) -> None:
         distribution_of(scene, key, {"measured": "heads.csv"})
         for key in ("belt.head_mass", "belt.guide_clearance")
     ]
-    (deviation,) = _deviations(found, np.array([1.0, 100.0]))  # 1 g for -0.01 mm: the sum stays
-    assert deviation == pytest.approx(0.0, abs=1e-12)
-    (deviation,) = _deviations(found, np.array([1.0, 0.0]))
-    assert deviation == pytest.approx(1e-3 * np.std(np.arange(10)), rel=1e-6)
+    values = [0.1, 0.5e-3]
+    steady = _bar(found, values, np.array([[1.0, 100.0], [1.0, 100.0]]))  # 1 g for -0.01 mm: the sum stays
+    assert steady.deviation == pytest.approx(0.0, abs=1e-12)
+    moved = _bar(found, values, np.array([[1.0, 0.0], [1.0, 0.0]]))
+    assert moved.deviation == pytest.approx(1e-3 * np.std(np.arange(10)), rel=1e-6)
+
+
+def test_at_a_kink_each_end_has_the_slope_of_its_side(tmp_path: Path) -> None:
+    claims = """
+[[claims]]
+kind = "below"
+signal = "abs(heald_1.lift + heald_2.lift - 98 mm)"
+bound = "1 mm"
+[[claims]]
+kind = "rapier_in_open_shed"
+head_height = "9.4 mm"
+"""
+    path, tolerances = tmp_path / "tie.toml", '"heald_2.stroke" = ["96.5 mm", "99 mm"]\n'
+    text = (SIMS / f"{DEMO}.toml").read_text()
+    path.write_text(text + f"\n[tolerances]\n{tolerances}{claims}")
+    bars = loomfmu.run(path, set=FEW, output=tmp_path / "tie.h5").claims[-2:]
+    with loomfmu.prepare(path, set=FEW) as loom:
+        ends = [loom.evaluate({"heald_2.stroke": each}).claims[-2:] for each in ("96.5 mm", "99 mm")]
+    for bar, *others in zip(bars, *ends, strict=True):
+        # both frames are alike: what makes one of them worse takes from the distance, to either side
+        loss = bar.distance - min(each.distance for each in others)
+        assert loss > 0.0
+        assert bar.loss == pytest.approx(loss, rel=0.1)  # what is of second order: 6 % of the room

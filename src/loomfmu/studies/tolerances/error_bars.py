@@ -1,7 +1,7 @@
 """Error bars of verdicts by the tolerances of a scene, to first order: by the gradients of the claims."""
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -66,8 +66,8 @@ def error_bars(scene: Scene, derive: Derive, claims: int) -> Notes:
         slopes = slopes_of(derive([move_of(scene, each.varied) for each in found]), claims)
     except LoomfmuError as error:
         return _without(claims, str(error))
-    bars = [_bar(found, values, row) for row in slopes]
-    known = np.all(np.isfinite(slopes), axis=1).tolist()
+    bars = [_bar(found, values, slopes[:, number]) for number in range(claims)]
+    known = np.all(np.isfinite(slopes), axis=(0, 2)).tolist()
 
     def why(number: int, verdict: Verdict) -> str:
         if found := without_gradient(scene, verdict):
@@ -87,18 +87,20 @@ def _without(claims: int, why: str) -> Notes:
 
 
 def _bar(found: Sequence[Distribution], values: Sequence[float], slopes: Floats) -> _Bar:
-    changes = [
-        [slope * (end - value) if slope else 0.0 for end in each.ends]
-        for each, value, slope in zip(found, values, slopes.tolist(), strict=True)
-    ]
-    loss, gain = (sum(max(0.0, *(side * each for each in ends)) for ends in changes) for side in (-1.0, 1.0))
-    return _Bar(loss, gain, math.hypot(*_deviations(found, slopes)))
-
-
-def _deviations(found: Sequence[Distribution], slopes: Floats) -> Iterator[float]:
-    """Yield the standard deviation of the distance by each value, or by all that were measured together."""
-    together: dict[object, Floats] = {}
-    for each, slope in zip(found, slopes.tolist(), strict=True):
+    """The bar of a claim by its slopes, (sides, values)."""
+    each_with = list(zip(found, values, slopes.T.tolist(), strict=True))
+    changes = [_changes(np.array(each.ends), value, sides) for each, value, sides in each_with]
+    loss, gain = (float(sum(max(0.0, np.max(side * each)) for each in changes)) for side in (-1.0, 1.0))
+    together: dict[object, Floats] = {}  # by all that were measured together
+    for each, value, sides in each_with:
         source = each.measured or each.key
-        together[source] = together.get(source, 0.0) + slope * np.asarray(each.quantiles(SHARES))
-    yield from (float(np.std(each)) for each in together.values())
+        moved = _changes(np.asarray(each.quantiles(SHARES)), value, sides)
+        together[source] = together.get(source, 0.0) + moved
+    return _Bar(loss, gain, math.hypot(*(float(np.std(each)) for each in together.values())))
+
+
+def _changes(at: Floats, value: float, sides: Sequence[float]) -> Floats:
+    """The changes of a distance where a value changes, by its slopes below and above: 0 where these are 0."""
+    slopes = np.where(at < value, *sides)
+    with np.errstate(invalid="ignore"):
+        return np.where(slopes == 0.0, 0.0, slopes * (at - value))

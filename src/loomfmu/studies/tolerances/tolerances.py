@@ -225,7 +225,7 @@ class _Box(Evaluations):
                 run = self._loom.derived(self._settings(values), moves)
             except LoomfmuError:
                 return None
-            self._slopes[point] = slopes_of(run, len(scene.claims))
+            _below, self._slopes[point] = slopes_of(run, len(scene.claims))
         return self._slopes[point]
 
     def _values(self, point: Shares) -> list[float]:
