@@ -66,6 +66,12 @@ class Nets:
             self._links.setdefault(one, []).append((other, link))
             self._links.setdefault(other, []).append((one, link))
         self._causality = {node: _causality(node, instances, names) for node in self._links}
+        self._entries = {
+            (path, required(each, "name"))
+            for path, element in systems(system)
+            for each in connectors(element)
+            if each.get("kind") != "output"
+        }
 
     @property
     def wires(self) -> list[Wire]:
@@ -92,12 +98,15 @@ class Nets:
     def reached(self, node: Node, unit: Stated | None) -> list[Reached]:
         """Return the variables that take a value of a system's connector, in a unit.
 
-        None do where it is not connected, or where an output of an FMU gives the value.
+        None do where it is not connected, or where an output of an FMU gives the value. What enters a system
+        stays in it.
         """
         found = list(self._flow(node, unit)) if node in self._links else []
-        causality = [self._causality[each.node] for each in found]
-        takers = zip(found, causality, strict=True)
-        return [each for each, kind in takers if kind in ("input", "parameter") and "output" not in causality]
+        if any(self._causality[each.node] == "output" for each in found):
+            return []
+        inside = node[0] if node in self._entries else ()
+        takers = (each for each in found if self._causality[each.node] in ("input", "parameter"))
+        return [each for each in takers if all(end[0][: len(inside)] == inside for end in each.way)]
 
     def outputs(self) -> Iterator[tuple[str, str, str]]:
         """The connectors of the outermost system to which outputs lead, those, and why they are others.
