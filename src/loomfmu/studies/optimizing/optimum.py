@@ -274,9 +274,11 @@ def conclusion(found: Optimum) -> Iterator[str]:
         names = listed([f"'{name}'" for name in near])
         shares = (each.error / abs(each.bound or each.worst or 1.0) for each in near.values())
         share = 2.0 * max(shares)  # the error may be another one there
+        shared = all(each.bound for each in near.values())
+        keeps = f'safety = "{100.0 * share:.1g} %"' if shared else "a distance for each in [safety]"
         yield (
             f"Nearer to the bound than the numerical error, so undecided: {names};"
-            f' safety = "{100.0 * share:.1g} %" in the study keeps off it.'
+            f" {keeps} in the study keeps off it."
         )
     if found.failed:
         reason, others = found.failed[0], len(set(found.failed)) - 1
