@@ -77,7 +77,7 @@ def test_the_full_loom_has_every_mechanism_of_a_loom() -> None:
 def test_the_readme_shows_what_the_demonstration_prints(run: Run) -> None:
     printed = run("wl680_3600.toml").out.splitlines()
     readme = (SIMS.parent / "README.md").read_text()
-    lines = readme.split("ends as shown below.")[1].split("```text\n")[1].split("\n```")[0].splitlines()
+    lines = readme.split("## Run a published loom")[1].split("```text\n")[1].split("\n```")[0].splitlines()
     assert len(lines) > 4
     pace = "us each; "  # differs from run to run
     assert [line for line in lines if line not in printed and pace not in line] == ["..."]

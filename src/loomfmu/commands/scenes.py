@@ -187,7 +187,7 @@ def export(options: argparse.Namespace) -> int:
         raise LoomfmuError("--connectors is for --ssp: one FMU of a whole scene has variables instead")
     built_for = platforms(options)
     loaded = scene.load(options.scene, pairs(options.overrides))
-    if options.flavour != "live":
+    if options.flavour != "live" and sys.stderr.isatty():
         complain(f"building in C for {', '.join(built_for)}; the first time takes some minutes")
     if options.fmu:
         warnings = whole.export(loaded, options.fmu, built_for, options.fmi or 2, options.force)

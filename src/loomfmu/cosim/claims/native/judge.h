@@ -160,8 +160,11 @@ bool settle(struct run *run, const double *question, struct verdict *verdict, do
         estimate(verdict, sense, larger(spread, least), spread, model);
         verdict->error = INFINITY;
         verdict->distance = distance_from_bound(verdict, sense);
-    } else
-        estimate(verdict, sense, larger(larger(spread, left), least), spread, left);
+    } else {
+        /* a shaft at rest meets 0 exactly; a bound met to rounding is met only if the curve is as sure */
+        const bool exactly = verdict->worst == verdict->bound;
+        estimate(verdict, sense, larger(larger(spread, left), least), spread, exactly ? model : left);
+    }
     return true;
 }
 
