@@ -8,6 +8,9 @@ from ... import units
 BASES = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 
 
+ROUNDING = 1e-14  # of a few products
+
+
 @dataclass(frozen=True)
 class Linear:
     """A linear map of numbers: `factor` times the number, plus `offset`."""
@@ -26,6 +29,11 @@ class Linear:
         Linear(factor=6.0, offset=3.0)
         """
         return Linear(after.factor * self.factor, after(self.offset))
+
+    def is_like(self, other: "Linear") -> bool:
+        """Return whether both maps are the same but for rounding."""
+        pairs = ((self.factor, other.factor), (self.offset, other.offset))
+        return all(math.isclose(*each, rel_tol=ROUNDING) for each in pairs)
 
 
 SAME = Linear()

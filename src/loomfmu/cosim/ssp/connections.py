@@ -14,6 +14,8 @@ from .structure import Node, connectors, dictionary, systems
 from .values import Given
 from .xml import full, required, suppressed, transformed
 
+IN, OUT = "in", "out"  # of the ways of values through connectors of systems
+WAYS = {"input": IN, "parameter": IN, "structuralParameter": IN, "output": OUT, "calculatedParameter": OUT}
 Names = Mapping[tuple[str, ...], str]  # the instance that each component is, by the names that lead to it
 
 
@@ -60,17 +62,19 @@ class Nets:
         self._instances, self._names, self._units = instances, names, units
         self._links: dict[Node, list[tuple[Node, Link]]] = {}
         known: dict[frozenset[Node], Link] = {}
-        for one, other, link in _connections(system, units):
+        self._through: set[frozenset[Node]] = set()  # ends of connections from a system to itself, inside it
+        for path, one, other, link in _connections(system, units):
+            if path == one[0] == other[0]:
+                self._through.add(frozenset((one, other)))
             if known.setdefault(frozenset((one, other)), link) != link:
                 raise LoomfmuError(_two_ways(one, other))
             self._links.setdefault(one, []).append((other, link))
             self._links.setdefault(other, []).append((one, link))
         self._causality = {node: _causality(node, instances, names) for node in self._links}
-        self._entries = {
-            (path, required(each, "name"))
+        self._ways = {
+            (path, required(each, "name")): WAYS.get(each.get("kind", ""), "")
             for path, element in systems(system)
             for each in connectors(element)
-            if each.get("kind") != "output"
         }
 
     @property
@@ -98,15 +102,14 @@ class Nets:
     def reached(self, node: Node, unit: Stated | None) -> list[Reached]:
         """Return the variables that take a value of a system's connector, in a unit.
 
-        None do where it is not connected, or where an output of an FMU gives the value. What enters a system
-        stays in it.
+        None do where it is not connected, or where an output of an FMU gives the value.
         """
-        found = list(self._flow(node, unit)) if node in self._links else []
-        if any(self._causality[each.node] == "output" for each in found):
+        if node not in self._links or any(
+            self._causality[each.node] == "output" for each in self._flow(node, unit)
+        ):
             return []
-        inside = node[0] if node in self._entries else ()
-        takers = (each for each in found if self._causality[each.node] in ("input", "parameter"))
-        return [each for each in takers if all(end[0][: len(inside)] == inside for end in each.way)]
+        found = self._flow(node, unit, directed=True)
+        return [each for each in found if self._causality[each.node] in ("input", "parameter")]
 
     def outputs(self) -> Iterator[tuple[str, str, str]]:
         """The connectors of the outermost system to which outputs lead, those, and why they are others.
@@ -134,11 +137,25 @@ class Nets:
         fmu = self._instances[name].fmu
         return (fmu.elements(node[1]) or [fmu.ports[fmu.name_of(node[1])]])[0].stated
 
-    def _flow(self, start: Node, unit: Stated | None) -> Iterator[Reached]:
+    def _leads(self, one: Node, other: Node) -> bool:
+        """Return whether a value may go from one end of a connection to the other.
+
+        A system's input takes it from outside and gives it to what is inside, an output the other way round.
+        """
+        leaving, entering = self._ways.get(one, ""), self._ways.get(other, "")
+        if one[0] == other[0] and leaving and entering:
+            through = frozenset((one, other)) in self._through  # or from its output back to its input
+            return (leaving, entering) == ((IN, OUT) if through else (OUT, IN))
+        inside, outside = _is_inside(other, one), _is_inside(one, other)
+        leaves = inside if leaving == IN else not (leaving == OUT and inside)
+        return leaves and (outside if entering == OUT else not (entering == IN and outside))
+
+    def _flow(self, start: Node, unit: Stated | None, *, directed: bool = False) -> Iterator[Reached]:
         """Yield what a value reaches, through connectors of systems and itself first.
 
-        A unit is converted before the transformation of its connection, as the standard has it. Raises
-        LoomfmuError where two ways make different values of it.
+        A unit is converted before the transformation of its connection, as the standard has it. A value that
+        is `directed` goes through connectors of systems as their kinds say. Raises LoomfmuError where two
+        ways make different values of it.
         """
         found = {start: Reached((start,), SAME, unit)}
         waiting = [found[start]]
@@ -147,7 +164,7 @@ class Nets:
             if here.node != start and self._causality[here.node] == "output":
                 continue  # it gives a value of its own
             for node, link in self._links[here.node]:
-                if node in here.way:
+                if node in here.way or (directed and not self._leads(here.node, node)):
                     continue
                 to, made = self._unit(node), SAME
                 if not link.suppressed:
@@ -157,24 +174,31 @@ class Nets:
                 there = Reached((*here.way, node), total, to or here.unit, plain)
                 if found.setdefault(node, there) is there:
                     waiting.append(there)
-                elif found[node].conversion != total:
+                elif not found[node].conversion.is_like(total):
                     raise LoomfmuError(_two_ways(start, node))
 
+    def in_order(self, values: list[tuple[Reached, Given]]) -> list[Given]:
+        """Return the values that reach an instance, those on a longer way later: its ends have none of their
+        own.
 
-def in_order(values: list[tuple[Reached, Given]]) -> list[Given]:
-    """Return the values that reach an instance, those on a longer way later: its ends have none of their own.
+        Raises LoomfmuError for a variable whose values do not come along one way; through a dictionary, or a
+        connector of both ways, there is none.
+        """
+        values = sorted(values, key=lambda each: len(each[0].way))
+        last: dict[Node, Reached] = {}
+        for reached, _given in values:
+            before = last.setdefault(reached.node, reached)
+            end = before.way[0]
+            if end not in reached.way or (end != reached.way[0] and not self._ways.get(end)):
+                sink, *ends = map(_dotted, (reached.node, end, reached.way[0]))
+                raise LoomfmuError(f"{sink} takes the values of two connectors, {ends[0]} and {ends[1]}")
+            last[reached.node] = reached
+        return [given for _reached, given in values]
 
-    Raises LoomfmuError for a variable whose values do not come along one way.
-    """
-    values = sorted(values, key=lambda each: len(each[0].way))
-    last: dict[Node, Reached] = {}
-    for reached, _given in values:
-        before = last.setdefault(reached.node, reached)
-        if before.way[0] not in reached.way:
-            sink, *ends = map(_dotted, (reached.node, before.way[0], reached.way[0]))
-            raise LoomfmuError(f"{sink} takes the values of two connectors, {ends[0]} and {ends[1]}")
-        last[reached.node] = reached
-    return [given for _reached, given in values]
+
+def _is_inside(node: Node, system: Node) -> bool:
+    """Return whether a connector belongs to something in the system of another one."""
+    return len(node[0]) > len(system[0]) and node[0][: len(system[0])] == system[0]
 
 
 def _causality(node: Node, instances: dict[str, Instance], names: Names) -> str:
@@ -192,8 +216,10 @@ def _causality(node: Node, instances: dict[str, Instance], names: Names) -> str:
     return causality
 
 
-def _connections(system: Element, passing: Container[Node]) -> Iterator[tuple[Node, Node, Link]]:
-    """The two ends of each connection of a system and of the systems in it, and what it does to values.
+def _connections(
+    system: Element, passing: Container[Node]
+) -> Iterator[tuple[tuple[str, ...], Node, Node, Link]]:
+    """The connections of a system and of the systems in it: where each is, its ends, what it does to values.
 
     A connector of a reference to a signal dictionary is connected to the entry of that.
     """
@@ -202,7 +228,7 @@ def _connections(system: Element, passing: Container[Node]) -> Iterator[tuple[No
         for connection in owner.iterfind(f"{full('ssd:Connections')}/{full('ssd:Connection')}"):
             ends = [_end(connection, which, path, owner, elements) for which in ("start", "end")]
             transformation = transformed(connection, f"connection {' -> '.join(map(_dotted, ends))}")
-            yield ends[0], ends[1], Link(transformation, suppressed(connection))
+            yield path, ends[0], ends[1], Link(transformation, suppressed(connection))
         for name, each in elements.items():
             if each.tag == full("ssd:SignalDictionaryReference"):
                 wanted = required(each, "dictionary")
@@ -213,7 +239,7 @@ def _connections(system: Element, passing: Container[Node]) -> Iterator[tuple[No
                 for entry in (required(connector, "name") for connector in connectors(each)):
                     if (home, entry) not in passing:
                         raise LoomfmuError(f"{name}: {wanted} has no entry {shown(entry)}")
-                    yield ((*path, name), entry), (home, entry), Link(SAME, suppressed=False)
+                    yield path, ((*path, name), entry), (home, entry), Link(SAME, suppressed=False)
 
 
 def _end(

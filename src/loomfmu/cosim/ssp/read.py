@@ -25,7 +25,7 @@ from ..scenes.instance_tables import overridden, override, prevailing, state_uni
 from ..scenes.instances import TOLERANCE, Instance, check_name
 from ..scenes.scene import Scene, assemble
 from ..scenes.settings import DEEPEST, TIMES, toml
-from .connections import Nets, Reached, in_order
+from .connections import Nets, Reached
 from .package import Package
 from .structure import Node, connectors, joining, stated_by, structure, systems
 from .values import Given, apply, bound
@@ -162,7 +162,7 @@ class _Reader:
                 whole = ".".join((*path, given.name))
                 for name, value in self._by_wires(whole, nodes.get(whole), given, passing, nets):
                     wired[name].append(value)
-        return {name: [*each, *in_order(wired[name])] for name, each in values.items()}
+        return {name: [*each, *nets.in_order(wired[name])] for name, each in values.items()}
 
     def _by_wires(
         self, whole: str, node: Node | None, given: Given, passing: Mapping[Node, Stated | None], nets: Nets
