@@ -30,6 +30,13 @@ OUTER = f"""<ssd:System xmlns:ssd="http://ssp-standard.org/SSP1/SystemStructureD
 F_IN_S, F_IN_T, G = NAMES = {("s", "f"): "one", ("t", "f"): "two", ("g",): "three"}
 
 
+def nets(structure: str) -> Nets:
+    components = "\n".join(f'[{name}]\ncomponent = "WeftInsertion"' for name in NAMES.values())
+    instances = scenes.parse(f"duration = 1\nstep = 0.1\n{components}", "three", {}).instances
+    inner = {(path, name): None for path in ((), ("s",), ("t",)) for name in "uy"}
+    return Nets(fromstring(structure), instances, NAMES, inner)
+
+
 @pytest.mark.parametrize(
     ("start", "reached"),
     [
@@ -43,8 +50,12 @@ F_IN_S, F_IN_T, G = NAMES = {("s", "f"): "one", ("t", "f"): "two", ("g",): "thre
 def test_values_go_into_a_system_by_its_inputs_and_out_of_it_by_its_outputs(
     start: Node, reached: set[tuple[str, ...]]
 ) -> None:
-    components = "\n".join(f'[{name}]\ncomponent = "WeftInsertion"' for name in NAMES.values())
-    instances = scenes.parse(f"duration = 1\nstep = 0.1\n{components}", "three", {}).instances
-    inner = {(path, name): None for path in ((), ("s",), ("t",)) for name in "uy"}
-    nets = Nets(fromstring(OUTER), instances, NAMES, inner)
-    assert {each.node[0] for each in nets.reached(start, None)} == reached
+    assert {each.node[0] for each in nets(OUTER).reached(start, None)} == reached
+
+
+@pytest.mark.parametrize("kind", ["", 'kind="inout"', 'kind="local"'])
+@pytest.mark.parametrize("named", ["u", "y"])
+def test_values_pass_connectors_that_have_no_direction(kind: str, named: str) -> None:
+    known = {"u": "input", "y": "output"}[named]
+    structure = OUTER.replace(f'name="{named}" kind="{known}"', f'name="{named}" {kind}')
+    assert {F_IN_S, G} <= {each.node[0] for each in nets(structure).reached((("s",), "u"), None)}

@@ -60,22 +60,21 @@ class Nets:
         units: Mapping[Node, Stated | None],
     ):
         self._instances, self._names, self._units = instances, names, units
-        self._links: dict[Node, list[tuple[Node, Link]]] = {}
-        known: dict[frozenset[Node], Link] = {}
-        self._through: set[frozenset[Node]] = set()  # ends of connections from a system to itself, inside it
-        for path, one, other, link in _connections(system, units):
-            if path == one[0] == other[0]:
-                self._through.add(frozenset((one, other)))
-            if known.setdefault(frozenset((one, other)), link) != link:
-                raise LoomfmuError(_two_ways(one, other))
-            self._links.setdefault(one, []).append((other, link))
-            self._links.setdefault(other, []).append((one, link))
-        self._causality = {node: _causality(node, instances, names) for node in self._links}
         self._ways = {
             (path, required(each, "name")): WAYS.get(each.get("kind", ""), "")
             for path, element in systems(system)
             for each in connectors(element)
         }
+        self._links: dict[Node, list[tuple[Node, Link, bool]]] = {}  # and whether a value goes that way
+        known: dict[frozenset[Node], Link] = {}
+        for path, one, other, link in _connections(system, units):
+            if known.setdefault(frozenset((one, other)), link) != link:
+                raise LoomfmuError(_two_ways(one, other))
+            back = self._leads(other, one, path)
+            there = self._leads(one, other, path) or not back  # as it is drawn, where kinds allow neither
+            self._links.setdefault(one, []).append((other, link, there))
+            self._links.setdefault(other, []).append((one, link, back))
+        self._causality = {node: _causality(node, instances, names) for node in self._links}
 
     @property
     def wires(self) -> list[Wire]:
@@ -137,18 +136,18 @@ class Nets:
         fmu = self._instances[name].fmu
         return (fmu.elements(node[1]) or [fmu.ports[fmu.name_of(node[1])]])[0].stated
 
-    def _leads(self, one: Node, other: Node) -> bool:
-        """Return whether a value may go from one end of a connection to the other.
+    def _leads(self, one: Node, other: Node, path: tuple[str, ...]) -> bool:
+        """Return whether a value may go from one end of a connection in a system to the other.
 
         A system's input takes it from outside and gives it to what is inside, an output the other way round.
         """
         leaving, entering = self._ways.get(one, ""), self._ways.get(other, "")
-        if one[0] == other[0] and leaving and entering:
-            through = frozenset((one, other)) in self._through  # or from its output back to its input
-            return (leaving, entering) == ((IN, OUT) if through else (OUT, IN))
+        if one[0] == other[0]:  # through a system, or from its output back to its input
+            no_start, no_end = (OUT, IN) if path == one[0] else (IN, OUT)
+            return leaving != no_start and entering != no_end
         inside, outside = _is_inside(other, one), _is_inside(one, other)
-        leaves = inside if leaving == IN else not (leaving == OUT and inside)
-        return leaves and (outside if entering == OUT else not (entering == IN and outside))
+        leaves_it = inside if leaving == IN else not (leaving == OUT and inside)
+        return leaves_it and (outside if entering == OUT else not (entering == IN and outside))
 
     def _flow(self, start: Node, unit: Stated | None, *, directed: bool = False) -> Iterator[Reached]:
         """Yield what a value reaches, through connectors of systems and itself first.
@@ -163,8 +162,8 @@ class Nets:
             yield here
             if here.node != start and self._causality[here.node] == "output":
                 continue  # it gives a value of its own
-            for node, link in self._links[here.node]:
-                if node in here.way or (directed and not self._leads(here.node, node)):
+            for node, link, leads in self._links[here.node]:
+                if node in here.way or (directed and not leads):
                     continue
                 to, made = self._unit(node), SAME
                 if not link.suppressed:
