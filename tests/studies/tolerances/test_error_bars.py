@@ -11,7 +11,7 @@ import loomfmu
 from loomfmu import LoomfmuError, Result, Trace
 from loomfmu.cosim.scenes.scene import parse
 from loomfmu.studies.tolerances.distributions import distribution_of
-from loomfmu.studies.tolerances.error_bars import _bar
+from loomfmu.studies.tolerances.error_bars import SHARES, _bar
 
 SIMS = Path(__file__).parents[3] / "sims"
 DEMO = "wl680_3600"
@@ -123,10 +123,12 @@ def test_values_measured_together_vary_together(tmp_path: Path) -> None:
         distribution_of(scene, key, {"measured": "heads.csv"})
         for key in ("belt.head_mass", "belt.guide_clearance")
     ]
-    values = [0.1, 0.5e-3]
-    steady = _bar(found, values, np.array([[1.0, 100.0], [1.0, 100.0]]))  # 1 g for -0.01 mm: the sum stays
+    values, drawn = [0.1, 0.5e-3], [each.quantiles(SHARES) for each in found]
+    steady = _bar(
+        found, values, drawn, np.array([[1.0, 100.0], [1.0, 100.0]])
+    )  # 1 g for -0.01 mm: the sum stays
     assert steady.deviation == pytest.approx(0.0, abs=1e-12)
-    moved = _bar(found, values, np.array([[1.0, 0.0], [1.0, 0.0]]))
+    moved = _bar(found, values, drawn, np.array([[1.0, 0.0], [1.0, 0.0]]))
     assert moved.deviation == pytest.approx(1e-3 * np.std(np.arange(10)), rel=1e-6)
 
 

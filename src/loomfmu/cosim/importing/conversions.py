@@ -6,8 +6,6 @@ from dataclasses import dataclass, replace
 from ... import units
 
 BASES = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
-
-
 ROUNDING = 1e-14  # of a few products
 
 

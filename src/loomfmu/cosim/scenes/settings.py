@@ -51,7 +51,7 @@ def toml(text: str, kind: str = "") -> dict[str, Any]:
     except RecursionError:
         raise LoomfmuError(TOO_DEEP) from None
     except tomllib.TOMLDecodeError as error:
-        for single in re.finditer(r"(?m)^[ \t]*\[(claims|cases)\]", text):
+        if single := re.search(r"(?m)^[ \t]*\[(claims|cases)\]", text):
             line = text.count("\n", 0, single.start(1)) + 1
             raise LoomfmuError(f"{several(single[1])}; line {line} has [{single[1]}]") from None
         raise LoomfmuError(f"not valid TOML: {error}") from None

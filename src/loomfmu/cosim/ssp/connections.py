@@ -75,12 +75,13 @@ class Nets:
             self._links.setdefault(one, []).append((other, link, there))
             self._links.setdefault(other, []).append((one, link, back))
         self._causality = {node: _causality(node, instances, names) for node in self._links}
+        self._outputs = [node for node, causality in self._causality.items() if causality == "output"]
 
     @property
     def wires(self) -> list[Wire]:
         """Wires from outputs to inputs."""
         sources: dict[Node, dict[Node, Linear]] = {}
-        for output in [node for node, causality in self._causality.items() if causality == "output"]:
+        for output in self._outputs:
             for end in self._flow(output, self._unit(output)):
                 if self._causality[end.node] == "parameter":
                     ends = f"{_dotted(output)} -> {_dotted(end.node)}"
@@ -115,7 +116,7 @@ class Nets:
 
         The reason is empty where nothing but the unit may change on the way.
         """
-        for output in [node for node, causality in self._causality.items() if causality == "output"]:
+        for output in self._outputs:
             (name, variable), unit = self.variable(output), self._unit(output)
             fmu = self._instances[name].fmu
             changed = "it is an array" if fmu.elements(variable) else ""

@@ -66,7 +66,8 @@ def error_bars(scene: Scene, derive: Derive, claims: int) -> Notes:
         slopes = slopes_of(derive([move_of(scene, each.varied) for each in found]), claims)
     except LoomfmuError as error:
         return _without(claims, str(error))
-    bars = [_bar(found, values, slopes[:, number]) for number in range(claims)]
+    drawn = [np.asarray(each.quantiles(SHARES)) for each in found]
+    bars = [_bar(found, values, drawn, slopes[:, number]) for number in range(claims)]
     known = np.all(np.isfinite(slopes), axis=(0, 2)).tolist()
 
     def why(number: int, verdict: Verdict) -> str:
@@ -86,16 +87,17 @@ def _without(claims: int, why: str) -> Notes:
     return partial(remarked, remarks=dict.fromkeys(range(claims), f"{NONE}: {why}"))
 
 
-def _bar(found: Sequence[Distribution], values: Sequence[float], slopes: Floats) -> _Bar:
-    """The bar of a claim by its slopes, (sides, values)."""
-    each_with = list(zip(found, values, slopes.T.tolist(), strict=True))
-    changes = [_changes(np.array(each.ends), value, sides) for each, value, sides in each_with]
+def _bar(
+    found: Sequence[Distribution], values: Sequence[float], drawn: Sequence[Floats], slopes: Floats
+) -> _Bar:
+    """The bar of a claim by its slopes, (sides, values), for values `drawn` from each distribution."""
+    each_with = list(zip(found, values, drawn, slopes.T.tolist(), strict=True))
+    changes = [_changes(np.array(each.ends), value, sides) for each, value, _drawn, sides in each_with]
     loss, gain = (float(sum(max(0.0, np.max(side * each)) for each in changes)) for side in (-1.0, 1.0))
     together: dict[object, Floats] = {}  # by all that were measured together
-    for each, value, sides in each_with:
+    for each, value, at, sides in each_with:
         source = each.measured or each.key
-        moved = _changes(np.asarray(each.quantiles(SHARES)), value, sides)
-        together[source] = together.get(source, 0.0) + moved
+        together[source] = together.get(source, 0.0) + _changes(at, value, sides)
     return _Bar(loss, gain, math.hypot(*(float(np.std(each)) for each in together.values())))
 
 
