@@ -22,8 +22,8 @@ from ..display import notebook
 from ..errors import LoomfmuError, shown, suggestion
 from ..sweeps.varied import Varied, varied
 from ..traces import Signals, Verdict
+from .polished import Floats
 
-Floats = NDArray[np.float64]
 UNKNOWN = "its derivative is not known: the samples alone show no distance from its bound"
 CHANGE = 2.0**-10  # of a value: start values that follow it are found by what changes with it
 

@@ -12,8 +12,8 @@ from ...cosim.scenes.scene import Scene
 from ...errors import LoomfmuError
 from ...traces import Verdict
 from ...traces.verdict import remarked
-from ..fitting.measured import Floats
 from ..gradient import move_of, slopes_of, without_gradient
+from ..polished import Floats
 from ..span import port_of
 from .distributions import Distribution, distribution_of
 from .results import SAME
