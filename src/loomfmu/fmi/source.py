@@ -92,10 +92,6 @@ def _used_by(methods: dict[str, FunctionType]) -> _Used:
     used = _Used()
     for method in methods.values():
         _collect(method, used)
-    names = [*used.functions, *used.records, *used.constants, *used.from_math]
-    for name in names:
-        if names.count(name) > 1:
-            raise SourceError(f"{_place(method)}: {name} has two meanings in what the component uses")
     return used
 
 
@@ -127,6 +123,9 @@ def _collect(function: FunctionType, used: _Used) -> None:
                 f"{_place(function)}: {function.__name__} uses {name}, which is neither a function of the"
                 " physics, a number, several as a tuple, a frozen dataclass nor of math"
             )
+        kinds = (used.functions, used.records, used.constants, used.from_math)
+        if sum(name in each for each in kinds) > 1:
+            raise SourceError(f"{_place(function)}: {name} has two meanings in what the component uses")
 
 
 def _check_function(function: FunctionType, used: _Used) -> None:
